@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace v2vouch {
+
+/// Why an input, or a part of one, was refused. Each is counted and published.
+enum class Reason : std::uint8_t {
+  // Wire: the bytes are not a message of the expected type.
+  kUnknownChannel,
+  kTooLarge,
+  kTooShort,
+  kWrongType,
+  kBadLength,      ///< A length field is negative, over its cap, or more than the bytes left.
+  kTrailingBytes,  ///< The message ends before the buffer does.
+  kBadString,
+  kDecodeFailed,
+  // Content: well-formed, but the values cannot be.
+  kNotFinite,
+  kOutOfRange,
+  kUnknownSensor,
+  kSensorMismatch,  ///< The sensor named inside is not the one of the channel.
+  // Time and order.
+  kDuplicate,
+  kTooOld,       ///< Older than the replay buffer.
+  kFutureStamp,  ///< Too far ahead of the other own sensors.
+  kNoEgoMotion,
+  // Camera.
+  kNoDetector,
+  kBadImage,
+  // V2V.
+  kBsmRange,        ///< A raw value J2735 does not define.
+  kBsmUnavailable,  ///< Position, speed, heading or time missing: nothing to use.
+  kBsmStale,
+  kBsmFuture,
+  kBsmRepeat,
+  kBsmOwnEcho,
+  kBsmRate,
+  kBsmTableFull,
+  kBsmSignature,
+  kBsmImplausible,
+  kNoGnss,  ///< The car does not know yet where it is.
+  kGnssUnusable,
+  kGnssJump,
+  // Numerical failures inside one track or sender, which was dropped.
+  kTrackNumerics,
+  kSenderNumerics,
+  kTrackTableFull,
+  kCount
+};
+
+inline constexpr std::size_t kReasonCount = static_cast<std::size_t>(Reason::kCount);
+
+/// Snake-case name as published, e.g. "bsm_own_echo".
+std::string_view ReasonName(Reason reason);
+
+/// One counter per reason.
+using ReasonCounts = std::array<std::uint64_t, kReasonCount>;
+
+}  // namespace v2vouch

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+#include <variant>
+
+#include "daemon/base/check.h"
+#include "daemon/base/reason.h"
+
+namespace v2vouch {
+
+/// A value, or the reason why there is none. A refusal is an ordinary result.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : content_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
+  Result(Reason reason) : content_(reason) {}      // NOLINT(google-explicit-constructor)
+
+  explicit operator bool() const { return std::holds_alternative<T>(content_); }
+  const T& operator*() const { return value(); }
+  const T* operator->() const { return &value(); }
+  T& operator*() { return value(); }
+  T* operator->() { return &value(); }
+
+  const T& value() const {
+    V2VOUCH_CHECK(*this);
+    return *std::get_if<T>(&content_);
+  }
+  T& value() {
+    V2VOUCH_CHECK(*this);
+    return *std::get_if<T>(&content_);
+  }
+  [[nodiscard]] Reason reason() const {
+    V2VOUCH_CHECK(!*this);
+    return *std::get_if<Reason>(&content_);
+  }
+
+ private:
+  std::variant<T, Reason> content_;
+};
+
+}  // namespace v2vouch

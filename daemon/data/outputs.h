@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/base/reason.h"
+#include "daemon/data/track.h"
+
+namespace v2vouch {
+
+/// Where a sender stands with us. Values are those of track_t.
+enum class TrustState : std::int8_t {
+  kNone = 0,
+  kUnknown = 1,
+  kCandidate = 2,
+  kValidated = 3,
+  kBridged = 4,
+  kSuspect = 5,
+  kRevoked = 6,
+};
+
+/// One line of a published list; V2V fields stay empty on LOCAL.
+struct PublishedTrack {
+  LocalTrack track;            ///< `track.id` is the list's own id.
+  std::uint64_t local_id = 0;  ///< PRIORITY: the LOCAL track it rests on; 0 = none.
+  std::optional<Timestamp> last_v2v;
+  SenderId sender = 0;
+  TrustState trust = TrustState::kNone;
+  double bridge_budget_s = kNaN;
+  std::optional<Wgs84> position;  ///< In geodetic terms, where an alignment exists.
+  double bias_east_m = kNaN;
+  double bias_north_m = kNaN;
+};
+
+struct TrackList {
+  Timestamp stamp{};      ///< Time of validity; never goes back within one list.
+  std::int64_t seq = 0;
+  int revision = 0;       ///< Corrections by late data in the last replay buffer's length.
+  bool stale = false;
+  bool ego_gnss_suspect = false;
+  Pose<Odometry, Body> X_OB;
+  std::vector<SectorHealth> sectors;
+  std::vector<PublishedTrack> tracks;  ///< Ordered by id.
+};
+
+/// A refused input or a dropped track.
+struct Diagnostic {
+  Reason reason = Reason::kCount;
+  Timestamp stamp{};
+};
+
+enum class Verdict : std::int8_t { kWithdraw = 1, kAccuse = 2 };
+
+struct Evidence {
+  std::string_view name;  ///< With its unit; points at a literal.
+  double value = 0.0;
+};
+
+struct MisbehaviorReport {
+  Timestamp stamp{};
+  SenderId sender = 0;
+  CertificateDigest certificate{};
+  std::string_view check;  ///< Points at a literal.
+  Verdict verdict = Verdict::kWithdraw;
+  std::vector<Evidence> evidence;
+};
+
+/// All that one step gave. Reused from step to step.
+struct Outputs {
+  bool has_lists = false;  ///< The three lists below are new.
+  TrackList local;
+  TrackList priority;
+  TrackList v2v;
+  std::vector<Diagnostic> diagnostics;
+  std::vector<MisbehaviorReport> reports;
+
+  void Clear() {
+    has_lists = false;
+    diagnostics.clear();
+    reports.clear();
+  }
+  void Refuse(Reason reason, Timestamp stamp) { diagnostics.push_back({reason, stamp}); }
+};
+
+}  // namespace v2vouch

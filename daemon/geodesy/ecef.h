@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "daemon/geodesy/wgs84.h"
+
+namespace v2vouch {
+
+/// A point in E [m]. A type of its own, so that it cannot be taken for a local one.
+struct EcefPoint {
+  Eigen::Vector3d p_E = Eigen::Vector3d::Zero();
+};
+
+/// A point of a local plane [m]: east, north, up, turned by the plane's gamma.
+struct LocalPoint {
+  Eigen::Vector3d p_L = Eigen::Vector3d::Zero();
+};
+
+/// WGS-84 to earth-centred coordinates, the paper's formulas:
+///
+///     X = (N + h) cos(phi) cos(lambda),  Y = (N + h) cos(phi) sin(lambda),
+///     Z = (b^2/a^2 N + h) sin(phi),      N = a^2 / sqrt(a^2 cos^2(phi) + b^2 sin^2(phi))
+EcefPoint ToEcef(const Wgs84& position);
+
+/// The inverse, exact to double precision everywhere outside the earth's core.
+Wgs84 ToWgs84(const EcefPoint& point);
+
+/// Local plane L: touches the ellipsoid's normal at `origin`; x axis points `gamma_rad`
+/// counter-clockwise from east.
+class LocalPlane {
+ public:
+  explicit LocalPlane(const Wgs84& origin, double gamma_rad = 0.0);
+
+  [[nodiscard]] LocalPoint ToLocal(const EcefPoint& point) const;
+  [[nodiscard]] LocalPoint ToLocal(const Wgs84& position) const { return ToLocal(ToEcef(position)); }
+  [[nodiscard]] EcefPoint ToEcefPoint(const LocalPoint& point) const;
+  [[nodiscard]] Wgs84 ToGeodetic(const LocalPoint& point) const;
+  /// R_LE: turns directions from E into L.
+  [[nodiscard]] const Eigen::Matrix3d& R_LE() const { return R_LE_; }
+  [[nodiscard]] const Wgs84& origin() const { return origin_; }
+
+ private:
+  Wgs84 origin_;
+  Eigen::Vector3d origin_E_;
+  Eigen::Matrix3d R_LE_;
+};
+
+/// R_EN: axes east, north, up at a position, as columns in E.
+Eigen::Matrix3d EastNorthUp(const Wgs84& position);
+
+}  // namespace v2vouch

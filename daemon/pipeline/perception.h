@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "daemon/data/bias.h"
+#include "daemon/data/input.h"
+#include "daemon/data/outputs.h"
+#include "daemon/pipeline/perception_config.h"
+
+namespace v2vouch {
+
+/// All of perception as one function of its past. Reads no clock, opens no socket, starts no
+/// thread: the same inputs in the same order give the same outputs, bit for bit. Late inputs are
+/// put in their place by rolling back to a checkpoint and stepping again (see timeline.h).
+class Perception {
+ public:
+  /// @param bias where GPS bias estimates come from; NullBiasEstimator where there is none.
+  Perception(const PerceptionConfig& config, std::unique_ptr<BiasEstimator> bias);
+  ~Perception();
+  Perception(Perception&&) noexcept;
+  Perception& operator=(Perception&&) noexcept;
+
+  /// Takes one input in order of arrival. `outputs` is cleared and reused.
+  void Step(const Input& input, Outputs& outputs);
+
+  /// Copies of the newest lists predicted to `at`, marked stale. Changes no state.
+  void PredictedLists(Timestamp at, Outputs& outputs) const;
+
+  /// Newest time of any own-sensor frame; the clock of everything that is published.
+  [[nodiscard]] Timestamp newest_frame() const;
+  [[nodiscard]] int sender_count() const;
+  [[nodiscard]] bool ego_gnss_suspect() const;
+  /// Whether each configured sensor has spoken within three of its periods; radars, then cameras.
+  [[nodiscard]] bool IsRadarAlive(int radar) const;
+  [[nodiscard]] bool IsCameraAlive(int camera) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace v2vouch

@@ -1,0 +1,37 @@
+# v2vouch_add_room(NAME [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
+# One folder, one static library `v2vouch::NAME` (header-only where SOURCES is empty).
+function(v2vouch_add_room name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target "v2vouch_${name}")
+  if(ARG_SOURCES)
+    add_library(${target} STATIC ${ARG_SOURCES})
+    target_link_libraries(${target} PUBLIC v2vouch_options ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  else()
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE v2vouch_options ${ARG_PUBLIC})
+  endif()
+  add_library(v2vouch::${name} ALIAS ${target})
+endfunction()
+
+# v2vouch_add_program(NAME SOURCES file... LINK lib...)
+function(v2vouch_add_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE v2vouch_options ${ARG_LINK})
+endfunction()
+
+# v2vouch_add_test(NAME SOURCES file... LINK lib... [LABELS label...] [TIMEOUT s])
+# One GoogleTest executable, run by ctest as one entry.
+function(v2vouch_add_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  set_target_properties(${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  target_link_libraries(${name} PRIVATE v2vouch_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
+    SKIP_REGULAR_EXPRESSION "^SKIPPED: ")
+endfunction()

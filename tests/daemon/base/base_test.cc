@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "daemon/base/angle.h"
+#include "daemon/base/random.h"
+#include "daemon/base/reason.h"
+#include "daemon/base/time.h"
+#include "daemon/frames/pose.h"
+
+namespace v2vouch {
+namespace {
+
+TEST(WrapAngle, StaysInTheHalfOpenCircle) {
+  EXPECT_DOUBLE_EQ(WrapAngle(kPi), kPi);
+  EXPECT_DOUBLE_EQ(WrapAngle(-kPi), kPi);
+  EXPECT_NEAR(WrapAngle(3.0 * kPi + 0.1), -kPi + 0.1, 1e-12);
+  EXPECT_NEAR(AngleDifference(-kPi + 0.01, kPi - 0.01), 0.02, 1e-12);
+}
+
+TEST(FromSeconds, RoundsToTheNearestMicrosecond) {
+  EXPECT_EQ(FromSeconds(0.1).count(), 100000);
+  EXPECT_EQ(FromSeconds(-1.4e-6).count(), -1);
+}
+
+TEST(ReasonName, EveryReasonHasANameOfItsOwn) {
+  std::set<std::string_view> names;
+  for (std::size_t i = 0; i < kReasonCount; ++i) {
+    const auto name = ReasonName(static_cast<Reason>(i));
+    EXPECT_FALSE(name.empty());
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
+}
+
+TEST(RandomProperty, NormalHasItsMomentsAndIsRepeatable) {
+  Random a(7);
+  Random b(7);
+  double sum = 0.0;
+  double squares = 0.0;
+  constexpr int kDraws = 200000;
+  for (int i = 0; i < kDraws; ++i) {
+    const double x = a.Normal();
+    ASSERT_EQ(x, b.Normal());
+    sum += x;
+    squares += x * x;
+  }
+  EXPECT_NEAR(sum / kDraws, 0.0, 0.01);      // 4.5 sigma of the mean.
+  EXPECT_NEAR(squares / kDraws, 1.0, 0.015);  // 4.7 sigma of the variance.
+}
+
+TEST(RandomProperty, PoissonHasItsMean) {
+  Random random(11);
+  double sum = 0.0;
+  for (int i = 0; i < 100000; ++i) sum += random.Poisson(2.5);
+  EXPECT_NEAR(sum / 100000, 2.5, 0.025);  // 5 sigma.
+}
+
+TEST(Random, SubjectsAreIndependentOfEachOther) {
+  Random a = Random::ForSubject(1, 1);
+  Random b = Random::ForSubject(1, 2);
+  Random a_again = Random::ForSubject(1, 1);
+  EXPECT_NE(a.Bits(), b.Bits());
+  Random first = Random::ForSubject(1, 1);
+  EXPECT_EQ(first.Bits(), a_again.Bits());
+}
+
+TEST(PoseProperty, InverseUndoesAndChainsAssociate) {
+  Random random(20240611);
+  for (int i = 0; i < 500; ++i) {
+    const auto draw = [&] { return random.Uniform(-50.0, 50.0); };
+    const Pose<Odometry, Body> X_OB(draw(), draw(), draw());
+    const Pose<Body, Radar> X_BR(draw(), draw(), draw());
+    const Point<Radar> p_R{draw(), draw()};
+    const Point<Odometry> direct = (X_OB * X_BR) * p_R;
+    const Point<Odometry> nested = X_OB * (X_BR * p_R);
+    EXPECT_NEAR(direct.x_m, nested.x_m, 1e-11);
+    EXPECT_NEAR(direct.y_m, nested.y_m, 1e-11);
+    const Point<Radar> back = (X_OB * X_BR).Inverse() * direct;
+    EXPECT_NEAR(back.x_m, p_R.x_m, 1e-11);
+    EXPECT_NEAR(back.y_m, p_R.y_m, 1e-11);
+  }
+}
+
+}  // namespace
+}  // namespace v2vouch
