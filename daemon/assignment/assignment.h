@@ -8,7 +8,7 @@
 
 namespace v2vouch {
 
-/// A pair that must not be made.
+/// A pair that must not be made. Any other cost that is not finite forbids the pair too.
 inline constexpr double kForbidden = std::numeric_limits<double>::infinity();
 
 /// Rectangular assignment of minimum total cost in which a row or a column may stay alone.
@@ -16,20 +16,28 @@ inline constexpr double kForbidden = std::numeric_limits<double>::infinity();
 ///     min  sum over pairs cost(i, j)  +  sum over lone rows lone_row[i]
 ///
 /// Lone columns cost nothing; a pair is made only where it is cheaper than leaving its row alone
-/// and it is not kForbidden. Exact (shortest augmenting path, Jonker and Volgenant 1987,
-/// re-derived); real costs, negative ones included. Ties go to the lower row, then column.
+/// and it is not kForbidden. Exact for real costs, negative ones included; forbidden pairs never
+/// enter the arithmetic, so they cannot spoil the others. Method: shortest augmenting paths with
+/// row and column prices (Jonker and Volgenant 1987, re-derived), O(rows^2 x columns) at worst.
+///
+/// Ties: rows enter in order, a row takes the lowest of equally good columns, and a later row
+/// displaces an earlier one only where that is cheaper. Same input, same answer.
 /// Buffers are kept between calls: no allocation once they have grown.
 class AssignmentSolver {
  public:
   /// @param cost row-major rows x columns.
+  /// @param lone_row one price per row, finite.
   /// @return per row its column, or -1. Valid until the next call.
   std::span<const int> Solve(std::span<const double> cost, std::size_t rows, std::size_t columns,
                              std::span<const double> lone_row);
 
  private:
-  std::vector<double> padded_, row_price_, column_price_, shortest_;
-  std::vector<int> row_of_column_, column_of_row_, previous_, result_;
-  std::vector<char> visited_;
+  void Insert(int row, std::span<const double> cost, std::size_t columns,
+              std::span<const double> lone_row);
+
+  std::vector<double> row_price_, column_price_, shortest_;
+  std::vector<int> row_of_column_, previous_row_, visited_, result_;
+  std::vector<char> is_visited_;
 };
 
 /// One allowed pair.
@@ -40,15 +48,20 @@ struct SparsePair {
 };
 
 /// The same problem given by its allowed pairs only: split into connected clusters, each solved
-/// exactly. Fits gated tracking problems, where clusters are small.
+/// exactly. Fits gated tracking problems, where clusters are small. Of a pair named twice the
+/// cheaper counts. Memory follows the largest cluster (its rows x columns).
 class ClusteredAssignmentSolver {
  public:
+  /// @return per row its column, or -1. Valid until the next call.
   std::span<const int> Solve(std::span<const SparsePair> pairs, std::size_t rows,
                              std::size_t columns, std::span<const double> lone_row);
 
  private:
+  int Root(int node);
+
   AssignmentSolver dense_;
-  std::vector<int> parent_, result_, order_, local_rows_, local_columns_, column_index_;
+  std::vector<SparsePair> sorted_;
+  std::vector<int> parent_, result_, cluster_rows_, cluster_columns_, local_index_;
   std::vector<double> cost_, lone_;
 };
 
