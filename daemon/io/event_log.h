@@ -13,6 +13,9 @@
 
 namespace v2vouch {
 
+inline constexpr std::size_t kMaxChannelLength = 63;      ///< LCM's own limit.
+inline constexpr std::size_t kMaxEventBytes = 64u << 20;  ///< Longer data in a log is damage.
+
 /// One event of an LCM log file.
 struct LogEvent {
   std::int64_t number = 0;
@@ -21,15 +24,23 @@ struct LogEvent {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Reads the LCM event log format (sync word EDA1DA01, big endian). Own reader: liblcm's stops
-/// silently at damage or trusts a bogus length. Here damage is counted and skipped to the next sync
-/// word, lengths are bounded (channel 63 bytes, data 64 MiB), and a file that cannot be opened says
-/// why.
+/// Reads the LCM event log format. All integers big endian:
+///
+///     sync EDA1DA01 (4) | number (8) | microseconds (8) | channel length (4) | data length (4)
+///     | channel | data
+///
+/// Own reader: liblcm's stops silently at damage or trusts a bogus length. Here damage is counted
+/// and skipped to the next believable event, lengths are bounded (channel 63 bytes, data 64 MiB),
+/// and a file that cannot be opened says why. An event whose length reaches over another believable
+/// event, and whose own end meets none, has a damaged length and is skipped; the event in front of
+/// a damaged stretch is kept.
 class LogReader {
  public:
   /// @return nullptr with `error` set when the file cannot be opened or holds no event.
   static std::unique_ptr<LogReader> Open(const std::string& path, std::string& error);
   ~LogReader();
+  LogReader(const LogReader&) = delete;
+  LogReader& operator=(const LogReader&) = delete;
 
   /// The next event, reusing `event`'s buffers. False at the end.
   bool Next(LogEvent& event);
@@ -40,8 +51,18 @@ class LogReader {
 
  private:
   LogReader() = default;
+
+  bool Have(std::size_t bytes);
+  const std::uint8_t* At(std::size_t offset) const { return window_.data() + begin_ + offset; }
+  bool IsBelievable(std::size_t offset);
+  bool HidesAnEvent(std::size_t length);
+  void SkipDamage();
+
   std::FILE* file_ = nullptr;
-  std::int64_t size_ = 0;
+  std::int64_t size_ = 0;    // Of the file when it was opened.
+  std::int64_t offset_ = 0;  // Of the window's begin in the file.
+  std::size_t begin_ = 0;    // Of what is not yet consumed in window_.
+  std::vector<std::uint8_t> window_;
   std::int64_t damaged_ = 0;
 };
 
@@ -50,7 +71,10 @@ class LogWriter {
  public:
   static std::unique_ptr<LogWriter> Create(const std::string& path, std::string& error);
   ~LogWriter();
+  LogWriter(const LogWriter&) = delete;
+  LogWriter& operator=(const LogWriter&) = delete;
 
+  /// `channel` has 1..63 bytes, `bytes` at most 64 MiB.
   void Write(Timestamp received, std::string_view channel, std::span<const std::uint8_t> bytes);
   /// Flushes and closes. @return false with `error` set when anything could not be written.
   bool Close(std::string& error);
@@ -60,7 +84,7 @@ class LogWriter {
   std::FILE* file_ = nullptr;
   std::string path_;
   std::int64_t number_ = 0;
-  bool failed_ = false;
+  int errno_ = 0;  // Of the first write that failed.
 };
 
 }  // namespace v2vouch
