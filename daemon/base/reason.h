@@ -29,6 +29,7 @@ enum class Reason : std::uint8_t {
   kTooOld,       ///< Older than the replay buffer.
   kFutureStamp,  ///< Too far ahead of the other own sensors.
   kNoEgoMotion,
+  kClockRestart,  ///< Not a refusal: all own sensors stepped back, everything started again.
   // Camera.
   kNoDetector,
   kBadImage,

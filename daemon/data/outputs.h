@@ -71,7 +71,8 @@ struct MisbehaviorReport {
 
 /// All that one step gave. Reused from step to step.
 struct Outputs {
-  bool has_lists = false;  ///< The three lists below are new.
+  bool has_lists = false;     ///< `local` and `priority` are new.
+  bool has_v2v_list = false;  ///< `v2v` is new; it comes ten times a second, not with every frame.
   TrackList local;
   TrackList priority;
   TrackList v2v;
@@ -80,6 +81,7 @@ struct Outputs {
 
   void Clear() {
     has_lists = false;
+    has_v2v_list = false;
     diagnostics.clear();
     reports.clear();
   }
