@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "daemon/base/reason.h"
+#include "daemon/data/track.h"
+#include "daemon/odometry/odometry.h"
+#include "daemon/pipeline/perception_config.h"
+#include "daemon/preprocessing/radar/radar_preprocessing.h"
+#include "daemon/tracking/tracker.h"
+#include "daemon/visibility/visibility.h"
+
+namespace v2vouch {
+
+/// LOCAL: what radar, camera and the ego's own motion say, and nothing else. No GNSS and no V2V
+/// type appears in this interface, which is why no such message can change a bit of the list.
+/// Inputs must come in order of time; the timeline restores copies when one is late.
+class LocalPerception {
+ public:
+  explicit LocalPerception(const PerceptionConfig& config);
+
+  void OnEgoMotion(const EgoMotion& sample);
+
+  /// One frame: preprocess, predict, look, associate, update. `frame` is reused.
+  /// @return why the frame could not be used (then `frame` is untouched), or nullopt.
+  std::optional<Reason> OnRadarScan(const RadarScan& scan, LocalFrame& frame);
+  std::optional<Reason> OnCameraDetections(const CameraDetections& detections, LocalFrame& frame);
+
+  [[nodiscard]] const EgoOdometry& odometry() const { return odometry_; }
+  /// What each sensor can see, as of the last frame.
+  [[nodiscard]] const VisibilityMap& visibility() const { return visibility_; }
+  /// Tracks lost to numerics or overflow in the last frame.
+  [[nodiscard]] std::span<const Reason> failures() const { return tracker_.failures(); }
+
+  /// Whether a sensor has spoken within three of its periods, by the newest frame's time.
+  [[nodiscard]] bool IsRadarAlive(int radar) const;
+  [[nodiscard]] bool IsCameraAlive(int camera) const;
+
+ private:
+  enum class Kind { kRadar, kCamera };
+
+  void Look(const EgoState& ego);
+  [[nodiscard]] Detectability DetectabilityOf(Kind kind, int sensor, const EgoState& ego,
+                                              const LocalTrack& track) const;
+  void Finish(const EgoState& ego, LocalFrame& frame);
+
+  VehicleConfig vehicle_;
+  EgoOdometry odometry_;
+  RadarPreprocessor radar_preprocessor_;
+  VisibilityMap visibility_;
+  Tracker tracker_;
+  Timestamp newest_{};
+  std::vector<Timestamp> last_radar_, last_camera_;
+  // Scratch, meaningless between frames.
+  std::vector<RadarMeasurement> radar_measurements_;
+  std::vector<CameraMeasurement> camera_measurements_;
+  std::vector<Occluder> occluders_;
+  std::vector<char> radar_alive_, camera_alive_;
+};
+
+/// The footprint of a track as the visibility map wants it.
+Occluder FootprintOf(const LocalTrack& track);
+
+}  // namespace v2vouch

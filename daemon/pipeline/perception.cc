@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/pipeline/perception.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/models/ctra.h"
+#include "daemon/pipeline/clock_guard.h"
+#include "daemon/pipeline/timeline.h"
+#include "daemon/pipeline/v2v_list.h"
+
+namespace v2vouch {
+namespace {
+
+// Numbers for the clock guard; radars and cameras follow by index.
+enum Source { kEgoSource = 0, kRadarSource = 1000, kCameraSource = 2000 };
+
+// The diagnostic list of senders can be long; ten times a second is enough for eyes.
+constexpr double kV2vListPeriod_s = 0.1;
+
+int SourceOf(const EgoMotion&) { return kEgoSource; }
+int SourceOf(const RadarScan& scan) { return kRadarSource + scan.radar; }
+int SourceOf(const CameraDetections& boxes) { return kCameraSource + boxes.camera; }
+
+}  // namespace
+
+struct Perception::State {
+  State(const PerceptionConfig& configuration, std::unique_ptr<BiasEstimator> estimator)
+      : config(configuration),
+        guard(configuration.timeline),
+        timeline(configuration),
+        intake(configuration.v2v),
+        bias(std::move(estimator)) {}
+
+  template <class OwnFrame>
+  void OnOwn(const OwnFrame& message, Outputs& outputs);
+  void OnFix(const GnssFix& fix, Outputs& outputs);
+  void OnBsm(const Bsm& bsm, Outputs& outputs);
+  void Settle();
+  void Restart(Outputs& outputs);
+  [[nodiscard]] bool IsTooFarAhead(Timestamp stamp) const;
+  [[nodiscard]] EgoPlace Place() const;
+  void Publish(bool is_correction, Outputs& outputs);
+  void LocalList(const LocalFrame& frame, TrackList& list) const;
+
+  PerceptionConfig config;
+  ClockGuard guard;
+  Timeline timeline;
+  BsmIntake intake;
+  std::unique_ptr<BiasEstimator> bias;
+  std::int64_t lists = 0;
+  std::int64_t v2v_lists = 0;
+  int revision = 0;
+  Timestamp listed{};
+  Timestamp v2v_listed{};
+};
+
+Perception::Perception(const PerceptionConfig& config, std::unique_ptr<BiasEstimator> bias)
+    : state_(std::make_unique<State>(config, std::move(bias))) {}
+Perception::~Perception() = default;
+Perception::Perception(Perception&&) noexcept = default;
+Perception& Perception::operator=(Perception&&) noexcept = default;
+
+void Perception::Step(const Input& input, Outputs& outputs) {
+  outputs.Clear();
+  State& state = *state_;
+  std::visit(
+      [&](const auto& message) {
+        using Message = std::decay_t<decltype(message)>;
+        if constexpr (std::is_same_v<Message, Bsm>) {
+          state.OnBsm(message, outputs);
+        } else if constexpr (std::is_same_v<Message, GnssFix>) {
+          state.OnFix(message, outputs);
+        } else {
+          state.OnOwn(message, outputs);
+        }
+      },
+      input);
+  state.Settle();
+}
+
+template <class OwnMessage>
+void Perception::State::OnOwn(const OwnMessage& message, Outputs& outputs) {
+  switch (guard.Judge(SourceOf(message), message.stamp)) {
+    case ClockGuard::Ruling::kTooFarAhead:
+      return outputs.Refuse(Reason::kFutureStamp, message.stamp);
+    case ClockGuard::Ruling::kRestart:
+      Restart(outputs);
+      outputs.Refuse(Reason::kClockRestart, message.stamp);
+      break;
+    case ClockGuard::Ruling::kAccept:
+      break;
+  }
+  const auto placement = timeline.Insert(message, outputs);
+  if constexpr (!std::is_same_v<OwnMessage, EgoMotion>) {
+    if (placement.is_taken && timeline.newest_frame() != nullptr) {
+      Publish(placement.is_correction, outputs);
+    }
+  }
+}
+
+void Perception::State::OnFix(const GnssFix& fix, Outputs& outputs) {
+  if (IsTooFarAhead(fix.stamp)) return outputs.Refuse(Reason::kFutureStamp, fix.stamp);
+  timeline.Insert(fix, outputs);
+}
+
+void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
+  if (IsTooFarAhead(bsm.stamp)) return outputs.Refuse(Reason::kFutureStamp, bsm.stamp);
+  const EgoPlace place = Place();
+  intake.Expire(bsm.stamp);
+  const auto claim = intake.Accept(bsm, place);
+  if (!claim) return outputs.Refuse(claim.reason(), bsm.stamp);
+  // Far senders can meet no track: they are listed, and cost nothing more.
+  if (place.is_known && (claim->p_E - place.p_E).norm() > config.timeline.interest_m) return;
+  timeline.Insert(TimedClaim{*claim, bsm.seq, bias->Estimate(bsm.sender)}, outputs);
+}
+
+// What can no longer change goes to the bias estimator, in order.
+void Perception::State::Settle() {
+  for (const BiasResidual& residual : timeline.TakeSettled()) bias->Observe(residual);
+  bias->AdvanceTo(timeline.settled());
+}
+
+void Perception::State::Restart(Outputs&) {
+  timeline = Timeline(config);
+  intake = BsmIntake(config.v2v);
+  listed = {};
+  v2v_listed = {};
+  revision = 0;
+}
+
+bool Perception::State::IsTooFarAhead(Timestamp stamp) const {
+  return guard.newest() &&
+         stamp > *guard.newest() + FromSeconds(config.timeline.future_s);
+}
+
+EgoPlace Perception::State::Place() const {
+  const Alignment& alignment = timeline.priority().alignment();
+  const auto newest = timeline.local().odometry().newest();
+  if (!alignment.is_ready() || !newest) return {};
+  const auto ego = timeline.local().odometry().StateAt(*newest);
+  if (!ego) return {};
+  return PlaceOf(alignment, *ego, config.vehicle);
+}
+
+void Perception::State::Publish(bool is_correction, Outputs& outputs) {
+  const LocalFrame& frame = *timeline.newest_frame();
+  revision = is_correction && frame.stamp == listed ? revision + 1 : 0;
+  listed = frame.stamp;
+  ++lists;
+  outputs.has_lists = true;
+
+  LocalList(frame, outputs.local);
+
+  const Timestamp at = std::max(frame.stamp, timeline.newest_time());
+  const EgoState ego_at = timeline.local().odometry().StateAt(at).value_or(frame.ego);
+  outputs.priority = {};
+  outputs.priority.stamp = at;
+  outputs.priority.seq = lists;
+  outputs.priority.revision = revision;
+  outputs.priority.X_OB = ego_at.X_OB;
+  outputs.priority.sectors = frame.sectors;
+  outputs.priority.ego_gnss_suspect = timeline.priority().alignment().is_suspect();
+  timeline.priority().Publish(at, ego_at, outputs.priority);
+
+  if (at - v2v_listed >= FromSeconds(kV2vListPeriod_s)) {
+    v2v_listed = at;
+    outputs.has_v2v_list = true;
+    outputs.v2v = outputs.priority;
+    outputs.v2v.seq = ++v2v_lists;
+    ListSenders(intake.senders(), timeline.priority(), at, outputs.v2v.tracks);
+  }
+}
+
+void Perception::State::LocalList(const LocalFrame& frame, TrackList& list) const {
+  list.stamp = frame.stamp;
+  list.seq = lists;
+  list.revision = revision;
+  list.stale = false;
+  list.ego_gnss_suspect = false;  // GNSS is none of LOCAL's business.
+  list.X_OB = frame.ego.X_OB;
+  list.sectors = frame.sectors;
+  list.tracks.clear();
+  for (const LocalTrack& track : frame.tracks) {
+    if (track.is_confirmed) list.tracks.push_back({.track = track});
+  }
+}
+
+void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
+  outputs.Clear();
+  const State& state = *state_;
+  const LocalFrame* frame = state.timeline.newest_frame();
+  if (frame == nullptr || at <= state.timeline.newest_time()) return;
+  outputs.has_lists = true;
+  const EgoState ego_at = state.timeline.local().odometry().StateAt(at).value_or(frame->ego);
+
+  state.LocalList(*frame, outputs.local);
+  outputs.local.stamp = at;
+  outputs.local.stale = true;
+  outputs.local.X_OB = ego_at.X_OB;
+  for (PublishedTrack& line : outputs.local.tracks) {
+    PredictCtra(line.track.state_O, ToSeconds(at - frame->stamp), state.config.tracking.motion);
+  }
+  for (SectorHealth& sector : outputs.local.sectors) sector.state = SectorState::kBlind;
+
+  outputs.priority = outputs.local;
+  outputs.priority.tracks.clear();
+  outputs.priority.ego_gnss_suspect = state.timeline.priority().alignment().is_suspect();
+  state.timeline.priority().Publish(at, ego_at, outputs.priority);
+}
+
+Timestamp Perception::newest_frame() const {
+  const LocalFrame* frame = state_->timeline.newest_frame();
+  return frame == nullptr ? Timestamp{} : frame->stamp;
+}
+
+int Perception::sender_count() const { return static_cast<int>(state_->intake.senders().size()); }
+
+bool Perception::ego_gnss_suspect() const {
+  return state_->timeline.priority().alignment().is_suspect();
+}
+
+bool Perception::IsRadarAlive(int radar) const {
+  return state_->timeline.local().IsRadarAlive(radar);
+}
+
+bool Perception::IsCameraAlive(int camera) const {
+  return state_->timeline.local().IsCameraAlive(camera);
+}
+
+}  // namespace v2vouch

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/pipeline/timeline.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace v2vouch {
+namespace {
+
+template <class... Fs>
+struct Overloaded : Fs... {
+  using Fs::operator()...;
+};
+
+// Rank of the kinds of source at equal times: the ego's motion first, so that a frame of the same
+// instant finds it; claims last, so that they meet the newest tracks.
+enum Rank { kEgoRank, kGnssRank, kRadarRank, kCameraRank, kClaimRank };
+
+bool HasFrame(const TimelineInput& input) {
+  return std::holds_alternative<RadarScan>(input) ||
+         std::holds_alternative<CameraDetections>(input);
+}
+
+bool IsLocal(const TimelineInput& input) {
+  return HasFrame(input) || std::holds_alternative<EgoMotion>(input);
+}
+
+std::uint64_t Hash(std::string_view text, std::uint64_t seed) {  // FNV-1a.
+  std::uint64_t hash = 0xCBF29CE484222325ull ^ seed;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
+  return hash;
+}
+
+bool InsertOnce(std::vector<std::uint64_t>& set, std::uint64_t value) {
+  if (std::find(set.begin(), set.end(), value) != set.end()) return false;
+  set.push_back(value);
+  return true;
+}
+
+}  // namespace
+
+EventKey KeyOf(const TimelineInput& input) {
+  return std::visit(
+      Overloaded{
+          [](const EgoMotion& m) { return EventKey{m.stamp, kEgoRank, 0, m.seq}; },
+          [](const GnssFix& m) { return EventKey{m.stamp, kGnssRank, 0, m.seq}; },
+          [](const RadarScan& m) { return EventKey{m.stamp, kRadarRank, m.radar, m.seq}; },
+          [](const CameraDetections& m) { return EventKey{m.stamp, kCameraRank, m.camera, m.seq}; },
+          [](const TimedClaim& m) { return EventKey{m.claim.received, kClaimRank, m.claim.sender, m.seq}; }},
+      input);
+}
+
+Timeline::Timeline(const PerceptionConfig& config)
+    : config_(config),
+      local_(config),
+      priority_(config.priority, config.alignment, config.vehicle) {}
+
+std::unique_ptr<Timeline::Event> Timeline::NewEvent(TimelineInput input) {
+  std::unique_ptr<Event> event;
+  if (spare_events_.empty()) {
+    event = std::make_unique<Event>();
+  } else {
+    event = std::move(spare_events_.back());
+    spare_events_.pop_back();
+    event->has_frame = false;
+    event->emitted.clear();
+    event->residuals.clear();
+  }
+  event->key = KeyOf(input);
+  event->input = std::move(input);
+  // Frames are the natural places to go back to: few, and the dear ones to re-run.
+  if (HasFrame(event->input) || events_.empty()) {
+    event->checkpoint = NewCheckpoint();
+  }
+  return event;
+}
+
+std::unique_ptr<Timeline::Checkpoint> Timeline::NewCheckpoint() {
+  if (spare_checkpoints_.empty()) {
+    return std::make_unique<Checkpoint>(Checkpoint{local_, priority_});
+  }
+  auto checkpoint = std::move(spare_checkpoints_.back());
+  spare_checkpoints_.pop_back();
+  return checkpoint;
+}
+
+// Only LOCAL's own inputs move the window that decides what is too old: a message from outside
+// must not be able to push one of ours out.
+std::optional<Reason> Timeline::WhyNot(const TimelineInput& input) const {
+  if (!newest_local_) {
+    return IsLocal(input) ? std::nullopt : std::optional(Reason::kNoEgoMotion);
+  }
+  const EventKey key = KeyOf(input);
+  if (key.time < *newest_local_ - FromSeconds(config_.timeline.replay_buffer_s)) {
+    return Reason::kTooOld;
+  }
+  // Repeated BSMs were caught at the intake.
+  const bool is_duplicate =
+      key.rank != kClaimRank &&
+      std::any_of(events_.rbegin(), events_.rend(), [&](const std::unique_ptr<Event>& event) {
+        return event->key.rank == key.rank && event->key.channel == key.channel &&
+               event->key.seq == key.seq;
+      });
+  return is_duplicate ? std::optional(Reason::kDuplicate) : std::nullopt;
+}
+
+Timeline::Placement Timeline::Insert(TimelineInput input, Outputs& outputs) {
+  const EventKey key = KeyOf(input);
+  if (const auto reason = WhyNot(input)) {
+    outputs.Refuse(*reason, key.time);
+    return {};
+  }
+  const bool is_local = IsLocal(input);
+  if (is_local) newest_local_ = std::max(newest_local_.value_or(key.time), key.time);
+
+  const auto before = std::find_if(events_.rbegin(), events_.rend(),
+                                   [&](const auto& event) { return event->key <= key; });
+  const auto place = static_cast<std::size_t>(events_.rend() - before);
+  auto event = NewEvent(std::move(input));
+  if (place == 0 && !events_.empty()) {
+    // Older than all that is kept: what the oldest started from is what this one starts from.
+    if (!event->checkpoint) event->checkpoint = NewCheckpoint();
+    *event->checkpoint = *events_.front()->checkpoint;
+  }
+  events_.insert(events_.begin() + static_cast<std::ptrdiff_t>(place), std::move(event));
+
+  const auto later = events_.begin() + static_cast<std::ptrdiff_t>(place) + 1;
+  const bool is_last = later == events_.end();
+  const bool is_last_of_local = std::none_of(
+      later, events_.end(), [](const auto& other) { return IsLocal(other->input); });
+  std::size_t from = place;
+  while (!is_last && from > 0 && (from == place || !events_[from]->checkpoint)) --from;
+
+  // A claim or a fix cannot change LOCAL, so LOCAL is not even asked.
+  if (is_local) {
+    if (is_last_of_local) {
+      RunLocal(place, outputs);
+    } else {
+      local_ = events_[from]->checkpoint->local;
+      RunLocal(from, outputs);
+    }
+  }
+  if (!is_last) priority_ = events_[from]->checkpoint->priority;
+  RunPriority(from, outputs);
+
+  const bool is_correction =
+      HasFrame(events_[place]->input) &&
+      std::any_of(events_.begin() + static_cast<std::ptrdiff_t>(place) + 1, events_.end(),
+                  [](const auto& other) { return other->has_frame; });
+  Trim();
+  return {.is_taken = true, .is_correction = is_correction};
+}
+
+// The map that belongs to a frame is the one LOCAL had when the next frame began: only frames
+// change it, and every frame has a checkpoint.
+const VisibilityMap& Timeline::VisibilityAfter(std::size_t index) const {
+  for (std::size_t i = index + 1; i < events_.size(); ++i) {
+    if (events_[i]->checkpoint) return events_[i]->checkpoint->local.visibility();
+  }
+  return local_.visibility();
+}
+
+void Timeline::RunLocal(std::size_t from, Outputs& outputs) {
+  for (std::size_t i = from; i < events_.size(); ++i) {
+    Event& event = *events_[i];
+    if (event.checkpoint) event.checkpoint->local = local_;
+    step_.Clear();
+    const auto keep = [&](std::optional<Reason> refusal) {
+      event.has_frame = !refusal;
+      if (refusal) return step_.Refuse(*refusal, event.key.time);
+      for (const Reason failure : local_.failures()) step_.Refuse(failure, event.key.time);
+    };
+    std::visit(Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
+                          [&](const RadarScan& scan) { keep(local_.OnRadarScan(scan, event.frame)); },
+                          [&](const CameraDetections& boxes) {
+                            keep(local_.OnCameraDetections(boxes, event.frame));
+                          },
+                          [](const GnssFix&) {}, [](const TimedClaim&) {}},
+               event.input);
+    EmitOnce(event, step_, outputs);
+  }
+}
+
+void Timeline::RunPriority(std::size_t from, Outputs& outputs) {
+  for (std::size_t i = from; i < events_.size(); ++i) {
+    Event& event = *events_[i];
+    if (event.checkpoint) event.checkpoint->priority = priority_;
+    step_.Clear();
+    // The pose at an instant uses samples up to that instant only, so asking the newest odometry
+    // gives what a run in order would have given.
+    const auto ego = local_.odometry().StateAt(event.key.time);
+    std::visit(
+        Overloaded{[](const EgoMotion&) {},
+                   [&](const GnssFix& fix) {
+                     const auto at_fix =
+                         local_.odometry().StateAt(priority_.alignment().FixTime(fix));
+                     if (!at_fix) return step_.Refuse(Reason::kNoEgoMotion, event.key.time);
+                     priority_.OnFix(fix, *at_fix, step_);
+                   },
+                   [&](const TimedClaim& timed) {
+                     if (!ego) return step_.Refuse(Reason::kNoEgoMotion, event.key.time);
+                     if (timed.bias) priority_.SetBiasPrior(timed.claim.sender, *timed.bias);
+                     priority_.OnClaim(timed.claim, *ego, step_);
+                     newest_ = std::max(newest_, event.key.time);
+                   },
+                   [&](const auto&) {
+                     if (!event.has_frame) return;
+                     priority_.OnFrame(event.frame, VisibilityAfter(i), step_);
+                     newest_ = std::max(newest_, event.key.time);
+                   }},
+        event.input);
+    event.residuals = priority_.TakeResiduals();
+    EmitOnce(event, step_, outputs);
+  }
+}
+
+void Timeline::EmitOnce(Event& event, const Outputs& step, Outputs& outputs) const {
+  for (const Diagnostic& diagnostic : step.diagnostics) {
+    const auto hash = Hash(ReasonName(diagnostic.reason), 0);
+    if (InsertOnce(event.emitted, hash)) outputs.diagnostics.push_back(diagnostic);
+  }
+  for (const MisbehaviorReport& report : step.reports) {
+    const auto verdict = static_cast<std::uint64_t>(report.verdict);
+    const auto hash = Hash(report.check, (std::uint64_t{report.sender} << 8) | verdict);
+    if (InsertOnce(event.emitted, hash)) outputs.reports.push_back(report);
+  }
+}
+
+void Timeline::Trim() {
+  const Timestamp oldest =
+      newest_local_.value_or(Timestamp{}) - FromSeconds(config_.timeline.replay_buffer_s);
+  for (;;) {
+    // Drop up to the next checkpoint, as long as that one still lies before the buffer.
+    std::size_t next = 1;
+    while (next < events_.size() && !events_[next]->checkpoint) ++next;
+    if (next >= events_.size() || events_[next]->key.time > oldest) return;
+    for (std::size_t i = 0; i < next; ++i) {
+      std::unique_ptr<Event> event = std::move(events_.front());
+      events_.pop_front();
+      settled_ = event->key.time;
+      settled_residuals_.insert(settled_residuals_.end(), event->residuals.begin(),
+                                event->residuals.end());
+      if (event->checkpoint) spare_checkpoints_.push_back(std::move(event->checkpoint));
+      spare_events_.push_back(std::move(event));
+    }
+  }
+}
+
+const LocalFrame* Timeline::newest_frame() const {
+  const auto found = std::find_if(events_.rbegin(), events_.rend(),
+                                  [](const auto& event) { return event->has_frame; });
+  return found == events_.rend() ? nullptr : &(*found)->frame;
+}
+
+std::vector<BiasResidual> Timeline::TakeSettled() { return std::exchange(settled_residuals_, {}); }
+
+}  // namespace v2vouch

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "daemon/data/bias.h"
+#include "daemon/data/claim.h"
+#include "daemon/data/outputs.h"
+#include "daemon/pipeline/local_perception.h"
+#include "daemon/pipeline/priority_perception.h"
+
+namespace v2vouch {
+
+/// Place of an event in the one total order: time of measurement (of reception for a BSM), then
+/// kind of source, channel (sender of a BSM) and sequence number.
+struct EventKey {
+  Timestamp time{};
+  int rank = 0;
+  std::int64_t channel = 0;
+  std::int64_t seq = 0;
+  friend auto operator<=>(const EventKey&, const EventKey&) = default;
+};
+
+/// An accepted BSM with what the settled bias estimate said of its sender when it arrived.
+struct TimedClaim {
+  Claim claim;
+  std::int64_t seq = 0;
+  std::optional<BiasEstimate> bias;
+};
+
+using TimelineInput = std::variant<EgoMotion, GnssFix, RadarScan, CameraDetections, TimedClaim>;
+
+EventKey KeyOf(const TimelineInput& input);
+
+/// Puts every event in its place. An event later than all before it is stepped at once; an earlier
+/// one restores the nearest checkpoint and re-runs what came since: LOCAL and then the V2V side
+/// when it is an own sensor's, the V2V side alone when it is a GNSS fix or a claim. Any order of
+/// arrival within the replay buffer ends in the same state, bit for bit.
+class Timeline {
+ public:
+  explicit Timeline(const PerceptionConfig& config);
+
+  struct Placement {
+    bool is_taken = false;
+    bool is_correction = false;  ///< A frame that later frames of LOCAL had to be re-run for.
+  };
+
+  /// Refusals and reports go to `outputs` once per event, however often it is re-run. What is taken
+  /// of LOCAL's inputs depends on LOCAL's inputs alone.
+  Placement Insert(TimelineInput input, Outputs& outputs);
+
+  [[nodiscard]] const LocalPerception& local() const { return local_; }
+  [[nodiscard]] const PriorityPerception& priority() const { return priority_; }
+  /// The newest frame in order of time; nullptr before the first.
+  [[nodiscard]] const LocalFrame* newest_frame() const;
+  /// Newest time of any frame or claim.
+  [[nodiscard]] Timestamp newest_time() const { return newest_; }
+
+  /// Residuals of events that have left the buffer since the last call; they will not change.
+  std::vector<BiasResidual> TakeSettled();
+  /// Everything up to here is settled.
+  [[nodiscard]] Timestamp settled() const { return settled_; }
+
+ private:
+  struct Checkpoint {
+    LocalPerception local;
+    PriorityPerception priority;
+  };
+  struct Event {
+    EventKey key;
+    TimelineInput input;
+    bool has_frame = false;
+    LocalFrame frame;
+    std::unique_ptr<Checkpoint> checkpoint;  // The state before this event.
+    std::vector<std::uint64_t> emitted;      // What has left already, by hash.
+    std::vector<BiasResidual> residuals;
+  };
+
+  std::unique_ptr<Event> NewEvent(TimelineInput input);
+  std::unique_ptr<Checkpoint> NewCheckpoint();
+  [[nodiscard]] std::optional<Reason> WhyNot(const TimelineInput& input) const;
+  [[nodiscard]] const VisibilityMap& VisibilityAfter(std::size_t index) const;
+  void RunLocal(std::size_t from, Outputs& outputs);
+  void RunPriority(std::size_t from, Outputs& outputs);
+  void EmitOnce(Event& event, const Outputs& step, Outputs& outputs) const;
+  void Trim();
+
+  PerceptionConfig config_;
+  LocalPerception local_;
+  PriorityPerception priority_;
+  std::deque<std::unique_ptr<Event>> events_;  // Ordered by key; the first has a checkpoint.
+  std::vector<std::unique_ptr<Event>> spare_events_;
+  std::vector<std::unique_ptr<Checkpoint>> spare_checkpoints_;
+  std::vector<BiasResidual> settled_residuals_;
+  std::optional<Timestamp> newest_local_;  // Of any input LOCAL reads.
+  Timestamp newest_{};                     // Of any frame or claim.
+  Timestamp settled_{};
+  Outputs step_;
+};
+
+}  // namespace v2vouch

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/pipeline/v2v_list.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace v2vouch {
+namespace {
+
+// Claims older than this when listed are left out: their sender has gone silent.
+constexpr double kMaxListed_s = 2.0;
+
+}  // namespace
+
+EgoPlace PlaceOf(const Alignment& alignment, const EgoState& ego, const VehicleConfig& vehicle) {
+  const Point<Odometry> centre = ego.X_OB * Point<Body>{vehicle.centre_x_m, 0.0};
+  const Pose<LocalEnu, Odometry> X_LO = alignment.X_LO();
+  const Point<LocalEnu> p_L = X_LO * centre;
+  const double yaw_L = X_LO.yaw_rad() + ego.X_OB.yaw_rad();
+  const LocalPlane& plane = alignment.plane();
+  EgoPlace place;
+  place.p_E = plane.ToEcefPoint({Eigen::Vector3d(p_L.x_m, p_L.y_m, 0.0)}).p_E;
+  place.course_E =
+      plane.R_LE().transpose() * Eigen::Vector3d(std::cos(yaw_L), std::sin(yaw_L), 0.0);
+  place.speed_mps = ego.speed_mps;
+  place.is_known = true;
+  return place;
+}
+
+void ListSenders(std::span<const SenderTrack> senders, const PriorityPerception& priority,
+                 Timestamp at, std::vector<PublishedTrack>& lines) {
+  lines.clear();
+  const Alignment& alignment = priority.alignment();
+  if (!alignment.is_ready()) return;
+  for (const SenderTrack& sender : senders) {
+    if (at - sender.latest.received > FromSeconds(kMaxListed_s)) continue;
+    Claim claim = sender.latest;
+    claim.p_E = sender.p_E;
+    claim.course_E = sender.course_E;
+    claim.speed_mps = sender.state.mean[kSpeed];
+    const ClaimInOdometry now = alignment.ToOdometry(claim, std::max(at, claim.received));
+
+    PublishedTrack line;
+    line.track.id = sender.sender;
+    line.track.start = sender.first_received;
+    line.track.state_O.mean << now.p_O.x(), now.p_O.y(), now.yaw_rad, now.speed_mps,
+        now.yaw_rate_radps, now.accel_mps2;
+    line.track.state_O.covariance = sender.state.covariance;
+    line.track.state_O.covariance.topLeftCorner<2, 2>() += now.alignment;
+    line.track.extent = {.length_m = claim.length_m.value_or(4.5),
+                         .width_m = claim.width_m.value_or(1.8),
+                         .length_sigma_m = claim.length_m ? 0.1 : 1.0,
+                         .width_sigma_m = claim.width_m ? 0.1 : 0.3};
+    line.track.object_class = ObjectClass::kUnknown;
+    line.track.existence = 0.0;  // Said by radio alone: worth nothing by itself.
+    line.last_v2v = sender.latest.received;
+    line.sender = sender.sender;
+    line.trust = priority.TrustOf(sender.sender);
+    line.position = alignment.ToGeodetic(now.p_O, claim.height_m);
+    if (const auto bias = priority.BiasOf(sender.sender)) {
+      line.bias_east_m = bias->mean_en.x();
+      line.bias_north_m = bias->mean_en.y();
+    }
+    lines.push_back(std::move(line));
+  }
+  std::sort(lines.begin(), lines.end(),
+            [](const auto& a, const auto& b) { return a.track.id < b.track.id; });
+}
+
+}  // namespace v2vouch
