@@ -12,8 +12,8 @@ namespace v2vouch::wire {
 /// Decodes bytes that may be hostile into a generated LCM type. In this order: size cap of the
 /// type, fingerprint, a walk over every length field and string (each within its cap and the bytes
 /// left), whole buffer consumed, and only then lcm-gen's own decode, inside its own catch-all.
-/// Content is not judged here. Instantiated for every type of lcmtypes/.
-/// Source of the faults this stops: notes on LCM 1.3.1's generated decode in docs/wire.md.
+/// Content is not judged here. Instantiated for every type that travels on a channel.
+/// Why: lcm-gen 1.3.1 trusts every length, see the cases in tests/daemon/wire/codec_test.cc.
 template <class T>
 Result<T> Decode(std::span<const std::uint8_t> bytes);
 
