@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/preprocessing/radar/dbscan.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace v2vouch {
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr std::size_t kNoise = std::numeric_limits<std::size_t>::max();
+
+double Radius(const Reflection& a, const Reflection& b, const Neighbourhood& n) {
+  return n.scale * (n.eps_m + n.eps_per_m * 0.5 * (a.range_m + b.range_m));
+}
+
+// At most 1 for neighbours.
+double Distance2(const Reflection& a, const Reflection& b, const Neighbourhood& n) {
+  if (a.is_standing != b.is_standing) return kFar;
+  const double radius = Radius(a, b, n);
+  const double dx = (a.x_m - b.x_m) / radius;
+  const double dy = (a.y_m - b.y_m) / radius;
+  const double dv = (a.ground_rate_mps - b.ground_rate_mps) / n.eps_speed_mps;
+  return dx * dx + dy * dy + dv * dv;
+}
+
+}  // namespace
+
+std::size_t Dbscan::Root(std::size_t i) {
+  while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+  return i;
+}
+
+std::span<const std::size_t> Dbscan::Run(std::span<const Reflection> reflections,
+                                         const Neighbourhood& neighbourhood,
+                                         std::span<int> members) {
+  const std::size_t count = members.size();
+  const auto at = [&](std::size_t i) -> const Reflection& {
+    return reflections[static_cast<std::size_t>(members[i])];
+  };
+  // Calls visit(i, j, distance2) for every pair of neighbours. Two points differ in range by no
+  // more than their distance, and members are in order of range: the inner loop ends early.
+  const auto for_each_pair = [&](auto&& visit) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = i + 1; j < count; ++j) {
+        if (at(j).range_m - at(i).range_m > Radius(at(i), at(j), neighbourhood)) break;
+        const double distance2 = Distance2(at(i), at(j), neighbourhood);
+        if (distance2 <= 1.0) visit(i, j, distance2);
+      }
+    }
+  };
+
+  neighbours_.assign(count, 1);
+  if (neighbourhood.min_points > 1) {
+    for_each_pair([&](std::size_t i, std::size_t j, double) {
+      ++neighbours_[i];
+      ++neighbours_[j];
+    });
+  }
+  const auto is_core = [&](std::size_t i) { return neighbours_[i] >= neighbourhood.min_points; };
+
+  // Core points that are neighbours share a cluster, whose root is its lowest member.
+  parent_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) parent_[i] = i;
+  for_each_pair([&](std::size_t i, std::size_t j, double) {
+    if (!is_core(i) || !is_core(j)) return;
+    const std::size_t a = Root(i);
+    const std::size_t b = Root(j);
+    parent_[std::max(a, b)] = std::min(a, b);
+  });
+  // Border points join their nearest core; pairs come in order, so the lowest index wins a tie.
+  nearest_.assign(count, kFar);
+  if (neighbourhood.min_points > 1) {
+    for_each_pair([&](std::size_t i, std::size_t j, double distance2) {
+      if (is_core(i) == is_core(j)) return;
+      const std::size_t border = is_core(i) ? j : i;
+      if (distance2 < nearest_[border]) {
+        nearest_[border] = distance2;
+        parent_[border] = is_core(i) ? i : j;
+      }
+    });
+  }
+
+  // Gather cluster by cluster, in order of their lowest core point.
+  const auto cluster_of = [&](std::size_t i) {
+    const bool is_noise = !is_core(i) && nearest_[i] == kFar;
+    return is_noise ? kNoise : Root(i);
+  };
+  order_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) order_[i] = {cluster_of(i), members[i]};
+  std::sort(order_.begin(), order_.end());
+  ends_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    members[i] = order_[i].second;
+    const bool is_last = i + 1 == count || order_[i + 1].first != order_[i].first;
+    if (is_last && order_[i].first != kNoise) ends_.push_back(i + 1);
+  }
+  return ends_;
+}
+
+}  // namespace v2vouch
