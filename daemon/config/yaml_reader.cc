@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config/yaml_reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+#include "daemon/config/number_text.h"
+
+namespace v2vouch::config {
+namespace {
+
+// Levenshtein distance: how many letters to insert, delete or change.
+std::size_t Distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t change = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
+    }
+  }
+  return row.back();
+}
+
+// The known name meant, where one is near enough to be no accident.
+std::string Suggestion(std::string_view name, const std::vector<std::string_view>& known) {
+  constexpr std::size_t kLongest = 64;  // Distance is quadratic, and no key of ours is longer.
+  if (name.size() > kLongest) return "";
+  std::string_view best;
+  std::size_t best_distance = std::max<std::size_t>(2, name.size() / 3) + 1;
+  for (const std::string_view candidate : known) {
+    const std::size_t distance = Distance(name, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best.empty() ? "" : " (did you mean " + std::string(best) + "?)";
+}
+
+std::string Words(const Bounds& bounds) {
+  std::string words;
+  const auto add = [&words](const char* word, const std::optional<double>& bound) {
+    if (!bound) return;
+    words += words.empty() ? "must be " : ", ";
+    words += std::string(word) + " " + NumberText(*bound);
+  };
+  add("above", bounds.above);
+  add("at least", bounds.at_least);
+  add("below", bounds.below);
+  add("at most", bounds.at_most);
+  return words;
+}
+
+bool AreKept(const Bounds& bounds, double value) {
+  return (!bounds.above || value > *bounds.above) &&
+         (!bounds.at_least || value >= *bounds.at_least) &&
+         (!bounds.below || value < *bounds.below) && (!bounds.at_most || value <= *bounds.at_most);
+}
+
+// For messages: short, and no control characters on the user's terminal.
+std::string Shown(const YamlNode& node) {
+  switch (node.type) {
+    case YamlNode::Type::kEmpty:
+      return "nothing";
+    case YamlNode::Type::kList:
+      return "a list";
+    case YamlNode::Type::kMap:
+      return "a section";
+    case YamlNode::Type::kScalar:
+      break;
+  }
+  std::string text = node.text.substr(0, 60);
+  for (char& c : text) c = static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
+  if (text.size() < node.text.size()) text += "...";
+  return node.is_quoted ? "\"" + text + "\"" : text;
+}
+
+template <class T>
+std::optional<T> ParseWhole(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+YamlReader::YamlReader(const YamlNode& node, std::string path, const std::string& name,
+                       std::vector<std::string>& problems)
+    : node_(node), path_(std::move(path)), name_(name), problems_(problems) {
+  if (node.type != YamlNode::Type::kMap)
+    Report(node, path_, "must be a section of keys and values");
+}
+
+const YamlNode* YamlReader::Find(const char* key) {
+  known_.push_back(key);
+  if (node_.type != YamlNode::Type::kMap) return nullptr;
+  const YamlNode* found = nullptr;
+  for (std::size_t i = 0; i < node_.keys.size(); ++i) {
+    if (node_.keys[i] != key) continue;
+    if (found != nullptr) {
+      Report(node_.items[i], PathOf(key),
+             "stands here a second time, first in line " + std::to_string(found->line));
+    } else {
+      found = &node_.items[i];
+    }
+  }
+  return found;
+}
+
+std::string YamlReader::PathOf(std::string_view key) const {
+  return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+}
+
+void YamlReader::Finish() {
+  for (std::size_t i = 0; node_.type == YamlNode::Type::kMap && i < node_.keys.size(); ++i) {
+    const std::string& key = node_.keys[i];
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    YamlNode as_value;
+    as_value.type = YamlNode::Type::kScalar;
+    as_value.text = key;
+    problems_.push_back(name_ + ":" + std::to_string(node_.items[i].line) + ": " +
+                        PathOf(Shown(as_value)) + ": unknown key" + Suggestion(key, known_));
+  }
+}
+
+void YamlReader::Text(const char* key, std::string& value) {
+  if (const YamlNode* node = Find(key)) ReadText(*node, PathOf(key), value);
+}
+
+void YamlReader::ReadText(const YamlNode& node, const std::string& path, std::string& value) {
+  if (node.type == YamlNode::Type::kScalar) {
+    value = node.text;
+  } else {
+    Report(node, path, "must be a text");
+  }
+}
+
+void YamlReader::ReadBool(const YamlNode& node, const std::string& path, bool& value) {
+  const bool is_plain = node.type == YamlNode::Type::kScalar && !node.is_quoted;
+  if (is_plain && node.text == "true") {
+    value = true;
+  } else if (is_plain && node.text == "false") {
+    value = false;
+  } else {
+    Report(node, path, "must be true or false");
+  }
+}
+
+bool YamlReader::ReadNumber(const YamlNode& node, const std::string& path, double& value,
+                            const Bounds& bounds) {
+  double number = 0.0;
+  bool is_number = node.type == YamlNode::Type::kScalar && !node.is_quoted;
+  if (is_number) {
+    std::string_view text = node.text;
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    is_number = error == std::errc{} && end == text.data() + text.size() && std::isfinite(number);
+  }
+  if (!is_number) {
+    const std::string words = Words(bounds);
+    Report(node, path, words.empty() ? "must be a number" : words + " (a number)");
+    return false;
+  }
+  if (!AreKept(bounds, number)) {
+    Report(node, path, Words(bounds));
+    return false;
+  }
+  value = number;
+  return true;
+}
+
+std::optional<std::int64_t> YamlReader::ReadWhole(const YamlNode& node, const std::string& path,
+                                                  const Bounds& bounds, std::int64_t lowest,
+                                                  std::uint64_t highest) {
+  std::optional<std::int64_t> whole;
+  if (node.type == YamlNode::Type::kScalar && !node.is_quoted) {
+    whole = ParseWhole<std::int64_t>(node.text);
+    if (const auto large = ParseWhole<std::uint64_t>(node.text); !whole && large) {
+      whole = static_cast<std::int64_t>(*large);  // Only an uint64 can hold it; checked below.
+      if (*large > highest) whole.reset();
+    } else if (whole &&
+               (*whole < lowest || (*whole > 0 && static_cast<std::uint64_t>(*whole) > highest))) {
+      whole.reset();
+    }
+  }
+  if (!whole) {
+    const std::string words = Words(bounds);
+    Report(node, path, words.empty() ? "must be a whole number" : words + " (a whole number)");
+    return std::nullopt;
+  }
+  const double number = *whole < 0 && lowest >= 0
+                            ? static_cast<double>(static_cast<std::uint64_t>(*whole))
+                            : static_cast<double>(*whole);
+  if (!AreKept(bounds, number)) {
+    Report(node, path, Words(bounds));
+    return std::nullopt;
+  }
+  return whole;
+}
+
+bool YamlReader::IsList(const YamlNode& node, const std::string& path) {
+  if (node.type == YamlNode::Type::kList) return true;
+  Report(node, path, "must be a list");
+  return false;
+}
+
+void YamlReader::NotAmong(const YamlNode& node, const std::string& path,
+                          const std::vector<std::string_view>& names) {
+  std::string words = "must be one of";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    words += (i == 0 ? " " : ", ") + std::string(names[i]);
+  }
+  if (node.type == YamlNode::Type::kScalar) words += Suggestion(node.text, names);
+  Report(node, path, words);
+}
+
+void YamlReader::Report(const YamlNode& node, const std::string& path, const std::string& what) {
+  problems_.push_back(name_ + ":" + std::to_string(node.line) + ": " +
+                      (path.empty() ? "the file" : path) + " = " + Shown(node) + ": " + what);
+}
+
+}  // namespace v2vouch::config
