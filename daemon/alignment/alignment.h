@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "daemon/alignment/alignment_filter.h"
 #include "daemon/base/reason.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/claim.h"
@@ -16,13 +17,13 @@ namespace v2vouch {
 
 struct AlignmentConfig {
   double min_course_speed_mps = 3.0;  ///< Course over ground is used above this only.
-  double jump_m = 4.0;                ///< A fix farther than this (plus 4 sigma) from the prediction is a jump.
-  double reanchor_m = 5000.0;         ///< L gets a new origin beyond this distance.
-  double drift_per_m = 0.01;          ///< Growth of the offset's sigma with distance driven.
-  double yaw_drift_per_s = 3e-4;      ///< Random walk of the yaw offset [rad/sqrt(s)].
-  double position_floor_m = 0.3;      ///< A fix is never believed better than this.
-  double slow_error_m = 0.8;          ///< Slow (unfilterable) part of a fix' error, never averaged away.
-  double yaw_floor_rad = 0.003;       ///< The yaw offset is never believed better than this.
+  double jump_m = 4.0;  ///< A fix farther than this (plus 4 sigma) from the prediction is a jump.
+  double reanchor_m = 5000.0;     ///< L gets a new origin beyond this distance.
+  double drift_per_m = 0.01;      ///< Random drift of O: sigma = this * sqrt(10 m * distance).
+  double yaw_drift_per_s = 3e-4;  ///< Random walk of the yaw offset [rad/sqrt(s)].
+  double position_floor_m = 0.3;  ///< A fix is never believed better than this.
+  double slow_error_m = 0.8;     ///< Slow (unfilterable) part of a fix' error, never averaged away.
+  double yaw_floor_rad = 0.003;  ///< The yaw offset is never believed better than this.
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -39,11 +40,22 @@ struct AlignmentConfig {
 
 /// Where O lies in the local east-north-up plane L (DESIGN 5.5). Copyable.
 ///
-///     p_L = X_LO * p_O,  X_LO estimated by an EKF over GNSS positions and courses
+///     p_L = X_LO * p_O,  X_LO estimated by an EKF over GNSS positions, courses and headings
 ///
-/// Lever arm and latency of the antenna are applied. A jump freezes the estimate and raises
-/// `is_suspect`; it thaws when fixes agree with the dead-reckoned prediction again, or, when the new
-/// place is the consistent one for 10 s, by moving there with the flag kept for that time.
+/// Lever arm and latency of the antenna are applied. Everything is projected along its own vertical
+/// (heights are taken out first), so an unknown height moves nothing sideways. L's origin lies on a
+/// lattice of 0.01 degrees, so it does not depend on which fix came first; a new origin leaves
+/// every point in O where it was (below 1 mm).
+///
+/// Starts with a position and a yaw source: course above min_course_speed_mps, the receiver's
+/// heading, or, from a receiver that gives neither, 20 m of way. At standstill the car's pose in L
+/// is held in direction, and its position is only averaged.
+///
+/// A jump freezes the estimate (dead reckoning carries it) and raises `is_suspect`. It thaws when
+/// fixes agree with the dead-reckoned prediction for 1 s, or, when the new place has been the
+/// consistent one over 10 s of driving, by moving there, with the flag kept for 10 s more. A car
+/// that stands cannot tell the places apart and never moves; nor does one whose present alignment
+/// was vouched for in the last 5 s.
 class Alignment {
  public:
   Alignment(const AlignmentConfig& config, const VehicleConfig& vehicle);
@@ -51,28 +63,66 @@ class Alignment {
   /// @param ego the ego in O at the fix' time (latency applied by the caller through FixTime).
   /// @return why the fix was not used, or nullopt.
   std::optional<Reason> OnFix(const GnssFix& fix, const EgoState& ego);
+  /// When the fix was true: its stamp less the receiver's latency.
   [[nodiscard]] Timestamp FixTime(const GnssFix& fix) const;
+  /// A claim brought over by this alignment agreed with the own sensors at `at`.
+  void Vouch(Timestamp at);
 
   [[nodiscard]] bool is_ready() const { return is_ready_; }
   [[nodiscard]] bool is_suspect() const { return is_suspect_; }
   [[nodiscard]] const LocalPlane& plane() const { return plane_; }
   [[nodiscard]] Pose<LocalEnu, Odometry> X_LO() const;
-  /// Of [x, y, yaw] of X_LO, consider terms included.
+  /// Of [x, y, yaw] of X_LO, consider terms included. Far from O's origin x and y hang on yaw;
+  /// CovarianceAt tells what a place is worth.
   [[nodiscard]] const Eigen::Matrix3d& covariance() const { return covariance_; }
+  /// Of the place in L of a point fixed in O [m^2], consider terms included.
+  [[nodiscard]] Eigen::Matrix2d CovarianceAt(const Eigen::Vector2d& p_O) const;
 
-  /// A claim at its reception plus `dt_s`, aged by its own speed, course, acceleration and yaw rate
-  /// and brought into O. Requires is_ready().
+  /// A claim brought into O and carried to `at`, aged by its own speed, course, acceleration and
+  /// yaw rate (constant turn rate and acceleration) over age_s + (at - received), at most 3 s. Its
+  /// noise grows with that time. Requires is_ready().
   [[nodiscard]] ClaimInOdometry ToOdometry(const Claim& claim, Timestamp at) const;
   /// The geodetic position of a point in O. Requires is_ready().
   [[nodiscard]] Wgs84 ToGeodetic(const Eigen::Vector2d& p_O, double height_m) const;
+  /// The ego's footprint centre, height as of the last fix used. Requires is_ready().
+  [[nodiscard]] Wgs84 EgoGeodetic(const EgoState& ego) const;
 
  private:
+  // A second opinion on where the car is, grown from the fixes that contradict the estimate.
+  struct Candidate {
+    AlignmentFilter filter;
+    Timestamp last{};
+    double driven_s = 0.0;
+  };
+  // A first fix that waits for a yaw source.
+  struct Seed {
+    Eigen::Vector2d antenna_L = Eigen::Vector2d::Zero();
+    Eigen::Vector2d antenna_O = Eigen::Vector2d::Zero();
+    double sigma_m = 0.0;
+  };
+
+  [[nodiscard]] FixInPlane InPlane(const GnssFix& fix, const Eigen::Matrix2d& covariance_en) const;
+  [[nodiscard]] std::optional<AlignmentFilter> Start(const FixInPlane& fix, const EgoState& ego);
+  void Challenge(const FixInPlane& fix, const EgoState& ego);
+  void ReanchorIfFar();
+  void Publish();
+
   AlignmentConfig config_;
   VehicleConfig vehicle_;
+  Eigen::Vector2d antenna_B_;
+  AlignmentNoise noise_;
+  bool has_plane_ = false;
   bool is_ready_ = false;
   bool is_suspect_ = false;
   LocalPlane plane_{Wgs84{}};
-  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
+  AlignmentFilter filter_;
+  std::optional<Seed> seed_;
+  std::optional<Candidate> candidate_;
+  std::optional<Timestamp> agrees_since_;   // While suspect: since when fixes agree again.
+  std::optional<Timestamp> suspect_until_;  // After a move.
+  std::optional<Timestamp> vouched_;
+  std::optional<Timestamp> newest_;
+  double height_m_ = 0.0;
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Identity();
 };
 
