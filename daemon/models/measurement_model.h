@@ -13,36 +13,66 @@ namespace v2vouch {
 /// A measurement linearised at a state, whatever the sensor: innovation y = z - h(x) (angles
 /// wrapped), H = dh/dx, R. Fixed upper size, so no allocation; `size` rows are in use.
 struct Linearized {
-  static constexpr int kMaxRows = 4;
+  static constexpr int kMaxRows = 5;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kStateSize, 0, kMaxRows, kStateSize>;
+  using ExtentJacobian = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMaxRows, 2>;
   using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxRows, kMaxRows>;
   Vector y;
   Jacobian H;
+  /// Sensor noise, spread of the reflections, and E diag(length_sigma^2, width_sigma^2) E' for the
+  /// extent that was passed in: a filter that estimates the extent itself passes sigmas of 0.
   Covariance R;
+  ExtentJacobian E;  ///< dh/d(length, width); zero for a point target.
 };
 
-/// Extent-aware radar model: which point of the footprint a cluster's reference stands for, given
-/// aspect and extent, and how unsure that is (added to R).
+/// Where the centre of mass of a vehicle's radar reflections lies, as seen from a sensor: offset
+/// from the footprint's centre in the vehicle's own axes. Faces weigh by the angle under which the
+/// sensor sees them, in perspective: a face seen edge-on or from behind its plane counts nothing.
+///
+///     A = (|cos a| - L / 2r)+ W / df^2  (front or rear),  B = (|sin a| - W / 2r)+ L / ds^2  (side)
+///     offset = ( A sgn(cos a) L / 2,  B sgn(sin a) W / 2 ) / (A + B)
+///
+/// with a the direction from the vehicle to the sensor in vehicle axes, r the distance, df and ds
+/// those of the faces' middles in units of r; (.)+ and sgn are smoothed over about a degree, so
+/// that the Jacobian exists everywhere.
+/// @param p_OS the sensor seen from the centre, expressed in O [m].
+Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, double yaw_rad, const Extent& extent);
+
+/// Extent-aware radar model.
 ///
 ///     h(x) = [ |q|, atan2(q_y, q_x), range rate of q relative to the moving antenna ]
 ///
-/// with q the expected reflection point of the visible faces in the radar's frame R; the antenna
-/// moves with the ego's speed, yaw rate and lever arm. Extent {0, 0} is an ideal point target.
+/// with q the expected centre of mass of the reflections (ReflectionOffset) in the radar's frame R;
+/// q moves with the vehicle's speed and yaw rate x offset, the antenna with the ego's speed, yaw
+/// rate and lever arm. R adds to the measurement's own covariance: the spread of reflections over
+/// the visible faces divided by their number, a share of it that does not average out, and the
+/// ego's speed and yaw-rate noise. Extent {0, 0} is an ideal point target.
 /// @return nullopt when the target is closer than 0.1 m to the antenna.
 std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& extent,
                                          const EgoState& ego, const RadarConfig& radar,
                                          const RadarMeasurement& measurement);
 
-/// Camera model: bearings of the silhouette's edges (or of the centre, when an edge is cut) and
-/// depression of the nearest ground contact, all angles in the levelled camera frame.
-/// @return nullopt when the target is behind the image plane or nothing of the box is usable.
+/// Camera model, all angles in the levelled camera frame (x ahead, y left):
+///
+///     h(x) = [ largest bearing of a corner, smallest bearing of a corner,
+///              atan(z_camera cos(b) / smallest x of a corner) ]
+///
+/// with b the bearing of the box's middle, under which its bottom edge was turned into a
+/// depression. A cut edge drops its row; the other edge is then trusted less. A point target has
+/// one bearing, the middle of the box.
+/// @return nullopt when the target is not wholly ahead of the image plane or no row is usable.
 std::optional<Linearized> LinearizeCamera(const StateVector& x, const Extent& extent,
                                           const EgoState& ego, const CameraConfig& camera,
                                           const CameraMeasurement& measurement);
 
-/// Joseph-form EKF update of any state whose first kStateSize entries are the vehicle's.
-/// @return false when the innovation covariance is not positive definite; state untouched.
+/// A position in O measured directly (lidar, simulation).
+Linearized LinearizePosition(const StateVector& x, const Eigen::Vector2d& p_O,
+                             const Eigen::Matrix2d& noise);
+
+/// Joseph-form EKF update. Covariance stays symmetric and positive semidefinite; yaw is wrapped.
+/// @return false when the innovation covariance is not positive definite or the result is not
+///   finite; state untouched.
 bool UpdateWith(const Linearized& measurement, KinematicState& state);
 
 /// Squared Mahalanobis distance of the innovation and log-determinant of its covariance.

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/models/extent.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/base/angle.h"
+#include "daemon/models/kalman.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr double kMinSize_m = 0.3;
+constexpr double kMaxLength_m = 25.0;
+constexpr double kMaxWidth_m = 4.0;
+// 2 cm after one second: nothing real, it keeps the filter able to change its mind.
+constexpr double kSizePsd = 4e-4;
+
+using Vector = ExtendedState::Vector;
+using Matrix = ExtendedState::Matrix;
+
+void Clamp(ExtendedState& state) {
+  double& length = state.mean[ExtendedState::kLength];
+  double& width = state.mean[ExtendedState::kWidth];
+  length = std::clamp(length, kMinSize_m, kMaxLength_m);
+  width = std::clamp(width, kMinSize_m, kMaxWidth_m);
+  state.mean[kYaw] = WrapAngle(state.mean[kYaw]);
+}
+
+}  // namespace
+
+Extent ClassExtent(ObjectClass object_class) {
+  // Passenger cars after the European and US fleets' usual figures; lorries and buses after the
+  // 12 m x 2.55 m limit of Directive 96/53/EC, with articulated ones in the spread.
+  switch (object_class) {
+    case ObjectClass::kCar:
+      return {4.5, 1.8, 0.4, 0.1};
+    case ObjectClass::kVan:
+      return {5.2, 2.0, 0.6, 0.15};
+    case ObjectClass::kTruck:
+      return {10.0, 2.5, 3.0, 0.15};
+    case ObjectClass::kBus:
+      return {12.0, 2.55, 1.5, 0.1};
+    case ObjectClass::kMotorcycle:
+      return {2.2, 0.8, 0.2, 0.15};
+    case ObjectClass::kPedestrian:
+      return {0.5, 0.5, 0.15, 0.15};
+    case ObjectClass::kCyclist:
+      return {1.8, 0.6, 0.2, 0.15};
+    case ObjectClass::kUnknown:
+      break;
+  }
+  return {4.6, 1.85, 0.8, 0.2};
+}
+
+KinematicState ExtendedState::kinematic() const {
+  return {mean.head<kStateSize>(), covariance.topLeftCorner<kStateSize, kStateSize>()};
+}
+
+Extent ExtendedState::extent() const {
+  return {mean[kLength], mean[kWidth], std::sqrt(std::max(covariance(kLength, kLength), 0.0)),
+          std::sqrt(std::max(covariance(kWidth, kWidth), 0.0))};
+}
+
+Extent ExtendedState::assumed_extent() const { return {mean[kLength], mean[kWidth], 0.0, 0.0}; }
+
+void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise) {
+  KinematicState motion = state.kinematic();
+  StateMatrix F;
+  PredictCtra(motion, dt_s, noise, &F);
+  const Eigen::Matrix<double, kStateSize, 2> cross =
+      F * state.covariance.topRightCorner<kStateSize, 2>();
+  state.mean.head<kStateSize>() = motion.mean;
+  state.covariance.topLeftCorner<kStateSize, kStateSize>() = motion.covariance;
+  state.covariance.topRightCorner<kStateSize, 2>() = cross;
+  state.covariance.bottomLeftCorner<2, kStateSize>() = cross.transpose();
+  state.covariance(ExtendedState::kLength, ExtendedState::kLength) += kSizePsd * dt_s;
+  state.covariance(ExtendedState::kWidth, ExtendedState::kWidth) += 0.1 * kSizePsd * dt_s;
+}
+
+bool UpdateExtended(const Linearized& measurement, ExtendedState& state) {
+  Eigen::Matrix<double, Eigen::Dynamic, ExtendedState::kSize, 0, Linearized::kMaxRows,
+                ExtendedState::kSize>
+      H(measurement.y.size(), ExtendedState::kSize);
+  H << measurement.H, measurement.E;
+  if (!JosephUpdate<ExtendedState::kSize>(measurement.y, H, measurement.R, state.mean,
+                                          state.covariance)) {
+    return false;
+  }
+  Clamp(state);
+  return true;
+}
+
+std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
+                                           const ExtendedState& state) {
+  Eigen::Matrix<double, Eigen::Dynamic, ExtendedState::kSize, 0, Linearized::kMaxRows,
+                ExtendedState::kSize>
+      H(measurement.y.size(), ExtendedState::kSize);
+  H << measurement.H, measurement.E;
+  return EvaluateInnovation<ExtendedState::kSize>(measurement.y, H, measurement.R,
+                                                  state.covariance);
+}
+
+void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state) {
+  const Extent old_extent = ClassExtent(from);
+  const Extent new_extent = ClassExtent(to);
+  const Eigen::Vector2d old_mean(old_extent.length_m, old_extent.width_m);
+  const Eigen::Vector2d old_sigma(old_extent.length_sigma_m, old_extent.width_sigma_m);
+  const Eigen::Vector2d new_mean(new_extent.length_m, new_extent.width_m);
+  const Eigen::Vector2d new_sigma(new_extent.length_sigma_m, new_extent.width_sigma_m);
+
+  const Eigen::Matrix2d P = state.covariance.bottomRightCorner<2, 2>();
+  const Eigen::Vector2d mean = state.mean.tail<2>();
+  Eigen::Vector2d size;
+  Eigen::Matrix2d size_covariance = Eigen::Matrix2d::Zero();
+  for (int i = 0; i < 2; ++i) {
+    const double prior = 1.0 / (old_sigma[i] * old_sigma[i]);
+    const double learned = std::max(0.0, 1.0 / P(i, i) - prior);  // Information from sensors.
+    const double seen = learned * mean[i] + (learned > 0.0 ? prior * (mean[i] - old_mean[i]) : 0.0);
+    const double fresh = 1.0 / (new_sigma[i] * new_sigma[i]);
+    size_covariance(i, i) = 1.0 / (learned + fresh);
+    size[i] = size_covariance(i, i) * (seen + fresh * new_mean[i]);
+  }
+  // The rest of the state given the size is as it was: regress on the old size, then put the new
+  // distribution of the size in.
+  const Eigen::Matrix<double, kStateSize, 2> G =
+      state.covariance.topRightCorner<kStateSize, 2>() * P.inverse();
+  state.mean.head<kStateSize>() += G * (size - mean);
+  state.mean.tail<2>() = size;
+  StateMatrix motion = state.covariance.topLeftCorner<kStateSize, kStateSize>();
+  motion += G * (size_covariance - P) * G.transpose();
+  state.covariance.topLeftCorner<kStateSize, kStateSize>() = 0.5 * (motion + motion.transpose());
+  const Eigen::Matrix<double, kStateSize, 2> cross = G * size_covariance;
+  state.covariance.topRightCorner<kStateSize, 2>() = cross;
+  state.covariance.bottomLeftCorner<2, kStateSize>() = cross.transpose();
+  state.covariance.bottomRightCorner<2, 2>() = size_covariance;
+  Clamp(state);
+}
+
+std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoState& ego,
+                                        const RadarConfig& radar,
+                                        const RadarMeasurement& measurement) {
+  constexpr int kMinReturns = 3;
+  if (measurement.is_object || measurement.returns < kMinReturns) return std::nullopt;
+  const double n = measurement.returns;
+  const Point<Odometry> antenna = ego.X_OB * Point<Body>{radar.x_m, radar.y_m};
+  const Eigen::Vector2d p_OS = antenna.vector() - state.mean.head<2>();
+  const double range = p_OS.norm();
+  if (!(range > 1.0)) return std::nullopt;
+  const double aspect = std::atan2(p_OS.y(), p_OS.x()) - state.mean[kYaw];
+  const double length = state.mean[ExtendedState::kLength];
+  const double width = state.mean[ExtendedState::kWidth];
+  const double ca = std::abs(std::cos(aspect));
+  const double sa = std::abs(std::sin(aspect));
+
+  // Chance that at least one of the returns came from each face.
+  const double front = std::max(ca - 0.5 * length / range, 0.0) * width;
+  const double side = std::max(sa - 0.5 * width / range, 0.0) * length;
+  if (!(front + side > 1e-6)) return std::nullopt;
+  const double sees_front = 1.0 - std::pow(side / (front + side), n);
+  const double sees_side = 1.0 - std::pow(front / (front + side), n);
+
+  const double cover = (n - 1.0) / (n + 1.0);
+  const double scatter = 2.0 * (n - 1.0) / ((n + 1.0) * (n + 1.0) * (n + 2.0));
+  Linearized out;
+  out.y.resize(2);
+  out.H.setZero(2, kStateSize);
+  out.E.resize(2, 2);
+  out.E.row(0) << cover * sees_side * ca, cover * sees_front * sa;
+  out.E.row(1) << cover * sees_side * sa / range, cover * sees_front * ca / range;
+  const double radial = sees_side * length * ca + sees_front * width * sa;
+  const double across = (sees_side * length * sa + sees_front * width * ca) / range;
+  // The noise of single returns widens a span: for Gaussian noise of sigma s the span of n returns
+  // is about 2 s sqrt(ln n) of its own, and the two add as squares.
+  const double widen = 4.0 * std::log(n);
+  const double range_noise = widen * radar.range_sigma_m * radar.range_sigma_m;
+  const double azimuth_noise = widen * radar.azimuth_sigma_rad * radar.azimuth_sigma_rad;
+  const double span = measurement.azimuth_max_rad - measurement.azimuth_min_rad;
+  out.y[0] = measurement.radial_extent_m - std::sqrt(cover * cover * radial * radial + range_noise);
+  out.y[1] = span - std::sqrt(cover * cover * across * across + azimuth_noise);
+  out.R.setZero(2, 2);
+  // A tenth of the span for what the model leaves out: not every part of a body reflects.
+  out.R(0, 0) = (scatter + 0.01) * radial * radial + range_noise;
+  out.R(1, 1) = (scatter + 0.01) * across * across + azimuth_noise;
+  if (!std::isfinite(out.y.sum())) return std::nullopt;
+  return out;
+}
+
+void UpdateExtent(double across_m, double across_sigma_m, double aspect_rad, Extent& extent) {
+  const Eigen::Vector2d h(std::abs(std::sin(aspect_rad)), std::abs(std::cos(aspect_rad)));
+  Eigen::Vector2d mean(extent.length_m, extent.width_m);
+  Eigen::Vector2d variance(extent.length_sigma_m * extent.length_sigma_m,
+                           extent.width_sigma_m * extent.width_sigma_m);
+  const double S = h.cwiseAbs2().dot(variance) + across_sigma_m * across_sigma_m;
+  if (!(S > 0.0) || !std::isfinite(across_m)) return;
+  const Eigen::Vector2d gain = variance.cwiseProduct(h) / S;
+  mean += gain * (across_m - h.dot(mean));
+  // Length and width are kept apart: their correlation is given away, which is cautious.
+  variance -= gain.cwiseProduct(h).cwiseProduct(variance);
+  extent.length_m = std::clamp(mean[0], kMinSize_m, kMaxLength_m);
+  extent.width_m = std::clamp(mean[1], kMinSize_m, kMaxWidth_m);
+  extent.length_sigma_m = std::sqrt(std::max(variance[0], 0.0));
+  extent.width_sigma_m = std::sqrt(std::max(variance[1], 0.0));
+}
+
+}  // namespace v2vouch

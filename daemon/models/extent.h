@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "daemon/data/input.h"
+#include "daemon/data/track.h"
+#include "daemon/models/ctra.h"
+#include "daemon/models/measurement_model.h"
+
+namespace v2vouch {
+
+/// Typical footprint of a class with its spread in traffic; kUnknown is a car that may be anything
+/// up to a van.
+Extent ClassExtent(ObjectClass object_class);
+
+/// Vehicle whose size is estimated together with its motion. The near face is measured well, the
+/// centre lies half a length behind it: only the joint covariance knows that a longer vehicle is
+/// also farther away.
+struct ExtendedState {
+  static constexpr int kLength = kStateSize;
+  static constexpr int kWidth = kStateSize + 1;
+  static constexpr int kSize = kStateSize + 2;
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  Vector mean = Vector::Zero();  ///< StateIndex, then length and width [m].
+  Matrix covariance = Matrix::Identity();
+
+  [[nodiscard]] KinematicState kinematic() const;
+  [[nodiscard]] Extent extent() const;
+  /// The size with sigmas of 0: what the measurement models are to be given, because the joint
+  /// covariance carries the uncertainty already.
+  [[nodiscard]] Extent assumed_extent() const;
+};
+
+/// PredictCtra of the motion; the size keeps a little process noise, so that it never freezes.
+void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise);
+
+/// Joint Joseph update of motion and size. Length and width are kept within what drives on roads
+/// (0.3 to 25 m, 0.3 to 4 m), yaw is wrapped.
+/// @return false on numerical failure; state untouched.
+bool UpdateExtended(const Linearized& measurement, ExtendedState& state);
+std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
+                                           const ExtendedState& state);
+
+/// Replaces what was assumed about the size: takes the typical size of `from` out of the estimate
+/// (information filter), puts that of `to` in, and moves the vehicle as the joint covariance says:
+/// the face that was measured stays where it is.
+void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state);
+
+/// What the spread of one cluster says about the size, for a vehicle of known motion: `n` returns
+/// spread evenly over a visible span D cover (n - 1) / (n + 1) D of it on average. Rows: radial
+/// span and azimuth span. Use with three or more returns of a sensor that gives plain reflections.
+/// @return nullopt where the cluster says nothing.
+std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoState& ego,
+                                        const RadarConfig& radar,
+                                        const RadarMeasurement& measurement);
+
+/// The size alone, for filters that take the motion from elsewhere: one silhouette width or span.
+///     d = length |sin a| + width |cos a|,  a: aspect of the vehicle to the line of sight
+void UpdateExtent(double across_m, double across_sigma_m, double aspect_rad, Extent& extent);
+
+}  // namespace v2vouch

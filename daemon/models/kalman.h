@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cmath>
+#include <optional>
+
+#include "daemon/models/measurement_model.h"
+
+namespace v2vouch {
+
+/// Joseph-form Kalman update of any Gaussian whose size is known to the compiler.
+///
+///     S = H P H' + R,  K = P H' S^-1,  mean += K y,  P = (I - K H) P (I - K H)' + K R K'
+///
+/// @return false when S is not positive definite or the result is not finite; nothing is changed.
+template <int N, class Vector, class Jacobian, class Covariance>
+bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
+                  Eigen::Matrix<double, N, 1>& mean, Eigen::Matrix<double, N, N>& P) {
+  using Gain = Eigen::Matrix<double, N, Eigen::Dynamic, 0, N, Linearized::kMaxRows>;
+  const Gain PHt = P * H.transpose();
+  Linearized::Covariance S = H * PHt + R;
+  S = (0.5 * (S + S.transpose())).eval();
+  const Eigen::LLT<Linearized::Covariance> llt(S);
+  if (llt.info() != Eigen::Success) return false;
+  const Gain K = llt.solve(PHt.transpose()).transpose();
+  const Eigen::Matrix<double, N, 1> next = mean + K * y;
+  Eigen::Matrix<double, N, N> A = Eigen::Matrix<double, N, N>::Identity();
+  A.noalias() -= K * H;
+  const Eigen::Matrix<double, N, N> posterior = A * P * A.transpose() + K * R * K.transpose();
+  if (!next.allFinite() || !posterior.allFinite()) return false;
+  mean = next;
+  P = 0.5 * (posterior + posterior.transpose());
+  return true;
+}
+
+/// Likelihood of an innovation y whose covariance is H P H' + R.
+/// @return nullopt when that covariance is not positive definite or y is not finite.
+template <int N, class Vector, class Jacobian, class Covariance>
+std::optional<Likelihood> EvaluateInnovation(const Vector& y, const Jacobian& H,
+                                             const Covariance& R,
+                                             const Eigen::Matrix<double, N, N>& P) {
+  const Linearized::Covariance S = H * P * H.transpose() + R;
+  const Eigen::LLT<Linearized::Covariance> llt(S);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  const Linearized::Vector whitened = llt.matrixL().solve(Linearized::Vector(y));
+  Likelihood result;
+  result.rows = static_cast<int>(y.size());
+  result.distance_squared = whitened.squaredNorm();
+  for (int i = 0; i < result.rows; ++i) result.log_det += 2.0 * std::log(llt.matrixLLT()(i, i));
+  if (!std::isfinite(result.distance_squared) || !std::isfinite(result.log_det)) {
+    return std::nullopt;
+  }
+  return result;
+}
+
+}  // namespace v2vouch

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/models/extent.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "tests/daemon/models/random_scene.h"
+
+namespace v2vouch {
+namespace {
+
+ExtendedState LeadCar(ObjectClass object_class) {
+  const Extent size = ClassExtent(object_class);
+  ExtendedState state;
+  state.mean << 40.0, 0.0, 0.0, 15.0, 0.0, 0.0, size.length_m, size.width_m;
+  state.covariance = 0.01 * ExtendedState::Matrix::Identity();
+  const double variance = size.length_sigma_m * size.length_sigma_m;
+  state.covariance(ExtendedState::kLength, ExtendedState::kLength) = variance;
+  state.covariance(ExtendedState::kWidth, ExtendedState::kWidth) =
+      size.width_sigma_m * size.width_sigma_m;
+  // Rear bumper known: the centre moves by half of the length.
+  state.covariance(kX, kX) += 0.25 * variance;
+  state.covariance(kX, ExtendedState::kLength) = 0.5 * variance;
+  state.covariance(ExtendedState::kLength, kX) = 0.5 * variance;
+  return state;
+}
+
+TEST(AssumeClass, NamingATruckMovesItsCentreAndKeepsItsRear) {
+  ExtendedState state = LeadCar(ObjectClass::kUnknown);
+  const double rear = state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength];
+  AssumeClass(ObjectClass::kUnknown, ObjectClass::kTruck, state);
+  EXPECT_NEAR(state.mean[ExtendedState::kLength], 10.0, 1e-6);
+  EXPECT_NEAR(state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength], rear, 1e-6);
+  EXPECT_NEAR(state.extent().length_sigma_m, 3.0, 1e-6);
+  const Eigen::SelfAdjointEigenSolver<ExtendedState::Matrix> solver(state.covariance);
+  EXPECT_GT(solver.eigenvalues().minCoeff(), 0.0);
+}
+
+TEST(AssumeClass, AMeasuredSizeOutweighsTheName) {
+  ExtendedState state = LeadCar(ObjectClass::kUnknown);
+  state.covariance(ExtendedState::kLength, ExtendedState::kLength) = 0.01;
+  state.covariance(kX, ExtendedState::kLength) = 0.005;
+  state.covariance(ExtendedState::kLength, kX) = 0.005;
+  AssumeClass(ObjectClass::kUnknown, ObjectClass::kTruck, state);
+  EXPECT_NEAR(state.mean[ExtendedState::kLength], 4.6, 0.05);
+}
+
+TEST(PredictExtended, KeepsTheCentreTiedToTheLength) {
+  ExtendedState state = LeadCar(ObjectClass::kCar);
+  const double before = state.covariance(kX, ExtendedState::kLength);
+  PredictExtended(state, 0.5, MotionNoise{});
+  EXPECT_NEAR(state.mean[kX], 47.5, 1e-6);
+  EXPECT_NEAR(state.covariance(kX, ExtendedState::kLength), before, 1e-9);
+}
+
+TEST(LinearizeSpan, ALongSideSeenBroadsideTeachesTheLength) {
+  ExtendedState state = LeadCar(ObjectClass::kUnknown);
+  state.mean[kX] = 30.0;
+  state.mean[kYaw] = 0.5 * kPi;
+  RadarConfig radar;
+  RadarMeasurement z;
+  z.returns = 8;
+  z.azimuth_min_rad = -0.12;  // 7.2 m at 30 m.
+  z.azimuth_max_rad = 0.12;
+  z.radial_extent_m = 0.6;
+  for (int i = 0; i < 40; ++i) {
+    const auto span = LinearizeSpan(state, EgoState{}, radar, z);
+    ASSERT_TRUE(span);
+    ASSERT_TRUE(UpdateExtended(*span, state));
+  }
+  // Eight returns spread over D cover 7/9 of it.
+  EXPECT_NEAR(state.mean[ExtendedState::kLength], 7.2 * 9.0 / 7.0, 1.0);
+}
+
+TEST(LinearizeSpan, SaysNothingForFewReturnsOrObjects) {
+  const ExtendedState state = LeadCar(ObjectClass::kCar);
+  RadarMeasurement z;
+  z.returns = 2;
+  EXPECT_FALSE(LinearizeSpan(state, EgoState{}, RadarConfig{}, z));
+  z.returns = 9;
+  z.is_object = true;
+  EXPECT_FALSE(LinearizeSpan(state, EgoState{}, RadarConfig{}, z));
+}
+
+TEST(UpdateExtent, SilhouetteFromBehindTeachesTheWidthOnly) {
+  Extent extent = ClassExtent(ObjectClass::kUnknown);
+  const Extent before = extent;
+  for (int i = 0; i < 50; ++i) UpdateExtent(2.3, 0.2, kPi, extent);
+  EXPECT_NEAR(extent.width_m, 2.3, 0.1);
+  EXPECT_LT(extent.width_sigma_m, 0.05);
+  EXPECT_NEAR(extent.length_m, before.length_m, 1e-6);
+}
+
+}  // namespace
+}  // namespace v2vouch
