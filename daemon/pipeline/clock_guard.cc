@@ -48,7 +48,8 @@ ClockGuard::Ruling ClockGuard::Judge(int id, Timestamp stamp) {
     ++steps_back_;
     const bool all = std::all_of(sources_.begin(), sources_.end(),
                                  [](const Source& other) { return other.stepped_back; });
-    if (!all && steps_back_ < kStepsBackThatSuffice) return Ruling::kAccept;  // Too old; refused by age.
+    if (!all && steps_back_ < kStepsBackThatSuffice)
+      return Ruling::kAccept;  // Too old; refused by age.
     sources_.clear();
     newest_.reset();
     Accept(Find(id), stamp);

@@ -14,8 +14,8 @@ namespace v2vouch {
 /// played again from its start must.
 ///
 /// Ahead: a stamp more than `future_s` ahead of the newest accepted one is refused until a second
-/// source agrees with it within `future_s`. Back: when every source heard so far (or twenty messages
-/// in a row) steps back by more than `reset_s`, time starts again.
+/// source agrees with it within `future_s`. Back: when every source heard so far (or twenty
+/// messages in a row) steps back by more than `reset_s`, time starts again.
 class ClockGuard {
  public:
   explicit ClockGuard(const TimelineConfig& config) : config_(config) {}
@@ -32,7 +32,7 @@ class ClockGuard {
   struct Source {
     int id = 0;
     std::optional<Timestamp> ahead{};  // Its last refused stamp.
-    bool stepped_back = false;       // Since the last message that fits `newest_`.
+    bool stepped_back = false;         // Since the last message that fits `newest_`.
   };
   Source& Find(int id);
   void Accept(Source& source, Timestamp stamp);

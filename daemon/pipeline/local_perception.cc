@@ -75,10 +75,10 @@ std::optional<Reason> LocalPerception::OnCameraDetections(const CameraDetections
   ProcessCamera(detections, vehicle_.cameras[camera], camera_measurements_);
   tracker_.Predict(detections.stamp);
   Look(*ego);
-  tracker_.UpdateCamera(
-      detections.camera, *ego, camera_measurements_, [&](const LocalTrack& track) {
-        return DetectabilityOf(Kind::kCamera, detections.camera, *ego, track);
-      });
+  tracker_.UpdateCamera(detections.camera, *ego, camera_measurements_,
+                        [&](const LocalTrack& track) {
+                          return DetectabilityOf(Kind::kCamera, detections.camera, *ego, track);
+                        });
   last_camera_[camera] = detections.stamp;
   Finish(*ego, frame);
   return std::nullopt;

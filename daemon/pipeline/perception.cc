@@ -130,8 +130,7 @@ void Perception::State::Restart(Outputs&) {
 }
 
 bool Perception::State::IsTooFarAhead(Timestamp stamp) const {
-  return guard.newest() &&
-         stamp > *guard.newest() + FromSeconds(config.timeline.future_s);
+  return guard.newest() && stamp > *guard.newest() + FromSeconds(config.timeline.future_s);
 }
 
 EgoPlace Perception::State::Place() const {

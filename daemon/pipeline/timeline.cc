@@ -42,12 +42,21 @@ bool InsertOnce(std::vector<std::uint64_t>& set, std::uint64_t value) {
 
 EventKey KeyOf(const TimelineInput& input) {
   return std::visit(
-      Overloaded{
-          [](const EgoMotion& m) { return EventKey{m.stamp, kEgoRank, 0, m.seq}; },
-          [](const GnssFix& m) { return EventKey{m.stamp, kGnssRank, 0, m.seq}; },
-          [](const RadarScan& m) { return EventKey{m.stamp, kRadarRank, m.radar, m.seq}; },
-          [](const CameraDetections& m) { return EventKey{m.stamp, kCameraRank, m.camera, m.seq}; },
-          [](const TimedClaim& m) { return EventKey{m.claim.received, kClaimRank, m.claim.sender, m.seq}; }},
+      Overloaded{[](const EgoMotion& m) {
+                   return EventKey{m.stamp, kEgoRank, 0, m.seq};
+                 },
+                 [](const GnssFix& m) {
+                   return EventKey{m.stamp, kGnssRank, 0, m.seq};
+                 },
+                 [](const RadarScan& m) {
+                   return EventKey{m.stamp, kRadarRank, m.radar, m.seq};
+                 },
+                 [](const CameraDetections& m) {
+                   return EventKey{m.stamp, kCameraRank, m.camera, m.seq};
+                 },
+                 [](const TimedClaim& m) {
+                   return EventKey{m.claim.received, kClaimRank, m.claim.sender, m.seq};
+                 }},
       input);
 }
 
@@ -127,8 +136,8 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Outputs& outputs) {
 
   const auto later = events_.begin() + static_cast<std::ptrdiff_t>(place) + 1;
   const bool is_last = later == events_.end();
-  const bool is_last_of_local = std::none_of(
-      later, events_.end(), [](const auto& other) { return IsLocal(other->input); });
+  const bool is_last_of_local =
+      std::none_of(later, events_.end(), [](const auto& other) { return IsLocal(other->input); });
   std::size_t from = place;
   while (!is_last && from > 0 && (from == place || !events_[from]->checkpoint)) --from;
 
@@ -171,13 +180,14 @@ void Timeline::RunLocal(std::size_t from, Outputs& outputs) {
       if (refusal) return step_.Refuse(*refusal, event.key.time);
       for (const Reason failure : local_.failures()) step_.Refuse(failure, event.key.time);
     };
-    std::visit(Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
-                          [&](const RadarScan& scan) { keep(local_.OnRadarScan(scan, event.frame)); },
-                          [&](const CameraDetections& boxes) {
-                            keep(local_.OnCameraDetections(boxes, event.frame));
-                          },
-                          [](const GnssFix&) {}, [](const TimedClaim&) {}},
-               event.input);
+    std::visit(
+        Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
+                   [&](const RadarScan& scan) { keep(local_.OnRadarScan(scan, event.frame)); },
+                   [&](const CameraDetections& boxes) {
+                     keep(local_.OnCameraDetections(boxes, event.frame));
+                   },
+                   [](const GnssFix&) {}, [](const TimedClaim&) {}},
+        event.input);
     EmitOnce(event, step_, outputs);
   }
 }
@@ -190,26 +200,25 @@ void Timeline::RunPriority(std::size_t from, Outputs& outputs) {
     // The pose at an instant uses samples up to that instant only, so asking the newest odometry
     // gives what a run in order would have given.
     const auto ego = local_.odometry().StateAt(event.key.time);
-    std::visit(
-        Overloaded{[](const EgoMotion&) {},
-                   [&](const GnssFix& fix) {
-                     const auto at_fix =
-                         local_.odometry().StateAt(priority_.alignment().FixTime(fix));
-                     if (!at_fix) return step_.Refuse(Reason::kNoEgoMotion, event.key.time);
-                     priority_.OnFix(fix, *at_fix, step_);
-                   },
-                   [&](const TimedClaim& timed) {
-                     if (!ego) return step_.Refuse(Reason::kNoEgoMotion, event.key.time);
-                     if (timed.bias) priority_.SetBiasPrior(timed.claim.sender, *timed.bias);
-                     priority_.OnClaim(timed.claim, *ego, step_);
-                     newest_ = std::max(newest_, event.key.time);
-                   },
-                   [&](const auto&) {
-                     if (!event.has_frame) return;
-                     priority_.OnFrame(event.frame, VisibilityAfter(i), step_);
-                     newest_ = std::max(newest_, event.key.time);
-                   }},
-        event.input);
+    std::visit(Overloaded{[](const EgoMotion&) {},
+                          [&](const GnssFix& fix) {
+                            const auto at_fix =
+                                local_.odometry().StateAt(priority_.alignment().FixTime(fix));
+                            if (!at_fix) return step_.Refuse(Reason::kNoEgoMotion, event.key.time);
+                            priority_.OnFix(fix, *at_fix, step_);
+                          },
+                          [&](const TimedClaim& timed) {
+                            if (!ego) return step_.Refuse(Reason::kNoEgoMotion, event.key.time);
+                            if (timed.bias) priority_.SetBiasPrior(timed.claim.sender, *timed.bias);
+                            priority_.OnClaim(timed.claim, *ego, step_);
+                            newest_ = std::max(newest_, event.key.time);
+                          },
+                          [&](const auto&) {
+                            if (!event.has_frame) return;
+                            priority_.OnFrame(event.frame, VisibilityAfter(i), step_);
+                            newest_ = std::max(newest_, event.key.time);
+                          }},
+               event.input);
     event.residuals = priority_.TakeResiduals();
     EmitOnce(event, step_, outputs);
   }
