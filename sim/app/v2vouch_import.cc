@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// v2vouch-import: recordings of others -> LCM log or scenario.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "daemon/io/event_log.h"
+#include "sim/import/comma2k19.h"
+#include "sim/import/fcd.h"
+#include "sim/import/sumo_scenario.h"
+
+namespace v2vouch::sim {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+constexpr const char* kExamples = R"(Examples:
+  v2vouch-import comma2k19 DRIVE --out drive.lcm
+      DRIVE holds radar_tracks.csv, ego_speed.csv, imu_fwd_right_down.csv, gnss_ublox.csv.
+      Then: v2vouch-replay drive.lcm --config daemon/config/vehicle_comma2k19.yaml --out tracks.lcm
+  v2vouch-import sumo-fcd fcd.csv.gz --ego auto --v2v-share 0.5 --out-scenario cologne
+      Then: v2vouch-sim run cologne/scenario.yaml --seed 1 --out cologne.lcm
+
+Exit codes: 0 good, 1 the recording cannot be read or the result not written, 2 usage.)";
+
+// Progress for people; nothing when the output goes to a file.
+void Say(const char* what) {
+  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "v2vouch-import: %s\n", what);
+}
+
+int Fail(const std::string& why) {
+  std::fprintf(stderr, "v2vouch-import: %s\n", why.c_str());
+  return kFailed;
+}
+
+void Report(const nlohmann::ordered_json& figures, bool as_json) {
+  if (as_json) {
+    std::printf("%s\n", figures.dump().c_str());
+    return;
+  }
+  for (const auto& [name, value] : figures.items()) {
+    std::printf("%-16s %s\n", name.c_str(), value.dump().c_str());
+  }
+}
+
+int ImportComma2k19(const std::string& folder, const std::string& out,
+                    const Comma2k19Options& options, bool as_json) {
+  std::string error;
+  Comma2k19Segment segment;
+  Say("reading the drive");
+  if (!ReadComma2k19(folder, segment, error)) return Fail(error);
+  const std::vector<ImportedEvent> events = ToEvents(segment, options, error);
+  if (events.empty()) return Fail(folder + ": " + error);
+
+  Say("writing the log");
+  const auto writer = LogWriter::Create(out, error);
+  if (writer == nullptr) return Fail(error);
+  std::map<std::string, std::int64_t> channels;
+  for (const ImportedEvent& event : events) {
+    writer->Write(event.received, event.channel, event.bytes);
+    ++channels[event.channel];
+  }
+  if (!writer->Close(error)) return Fail(error);
+  Report({{"log", out},
+          {"events", events.size()},
+          {"seconds", ToSeconds(events.back().received - events.front().received)},
+          {"channels", channels}},
+         as_json);
+  return 0;
+}
+
+bool WriteFile(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << text;
+  file.close();
+  return file.good();
+}
+
+int ImportSumo(const std::string& path, const std::string& out, SumoOptions options, bool as_json) {
+  std::string error;
+  Say("reading the traffic");
+  const std::vector<FcdVehicle> vehicles = ReadFcd(path, error);
+  if (vehicles.empty()) return Fail(error);
+
+  const std::filesystem::path folder(out);
+  if (options.name.empty()) options.name = folder.lexically_normal().filename().string();
+  Say("choosing the ego and driving its surroundings");
+  SumoScenario scenario;
+  if (!MakeSumoScenario(vehicles, options, scenario, error)) return Fail(path + ": " + error);
+
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) return Fail(out + ": cannot be made: " + failed.message());
+  for (const auto& [name, text] : {std::pair{"scenario.yaml", &scenario.yaml},
+                                   std::pair{"trajectories.csv", &scenario.trajectories_csv}}) {
+    if (!WriteFile(folder / name, *text)) {
+      return Fail((folder / name).string() + ": cannot be written");
+    }
+  }
+  Report({{"scenario", (folder / "scenario.yaml").string()},
+          {"ego", scenario.ego},
+          {"seconds", scenario.duration_s},
+          {"vehicles", scenario.vehicles},
+          {"buildings", scenario.buildings}},
+         as_json);
+  return 0;
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app{"Turns recordings of others into LCM logs and scenarios.", "v2vouch-import"};
+  app.set_version_flag("--version", "v2vouch-import " V2VOUCH_VERSION);
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  bool as_json = false;
+  std::string in;
+  std::string out;
+
+  Comma2k19Options drive;
+  double latency_ms = drive.gnss_latency_s * 1e3;
+  CLI::App* const comma =
+      app.add_subcommand("comma2k19", "a real drive (radar objects, speed, gyro, GNSS) -> LCM log");
+  comma->add_option("DIR", in, "folder of the segment's CSV files")->required();
+  comma->add_option("--out", out, "log to write")->required();
+  comma->add_option("--radar", drive.radar_name, "name of the radar in the vehicle file")
+      ->capture_default_str();
+  comma
+      ->add_option(
+          "--range-offset", drive.range_offset_m,
+          "metres added to long_dist_m, which the collection counts from behind the sensor")
+      ->capture_default_str();
+  comma->add_flag("--flip-lateral", drive.flip_lateral, "lat_left_m is right positive");
+  comma->add_option("--gnss-latency-ms", latency_ms, "from measurement to the receiver's output")
+      ->check(CLI::Range(0.0, 2000.0))
+      ->capture_default_str();
+  comma->add_flag("--json", as_json, "figures as one line of JSON");
+
+  SumoOptions traffic;
+  traffic.name.clear();
+  bool no_buildings = false;
+  CLI::App* const sumo =
+      app.add_subcommand("sumo-fcd", "SUMO floating car data (CSV, .gz too) -> scenario folder");
+  sumo->add_option("FCD", in, "table with one row per vehicle and step")->required();
+  sumo->add_option("--out-scenario", out, "folder to write scenario.yaml and trajectories.csv to")
+      ->required();
+  sumo->add_option("--name", traffic.name, "of the scenario; default: the folder's");
+  sumo->add_option("--ego", traffic.ego,
+                   "SUMO id, or auto: the left-turner that meets most traffic")
+      ->capture_default_str();
+  sumo->add_option("--v2v-share", traffic.v2v_share, "share of vehicles that send BSMs")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  sumo->add_option("--van-share", traffic.van_share,
+                   "share of cars made tall vans, which hide others")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  sumo->add_flag("--no-buildings", no_buildings, "no houses in the intersection's corners");
+  sumo->add_option("--before", traffic.before_s, "seconds kept before the middle of the ego's turn")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  sumo->add_option("--after", traffic.after_s, "seconds kept after it")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  sumo->add_option("--seed", traffic.seed, "draws the vans")->capture_default_str();
+  sumo->add_flag("--json", as_json, "figures as one line of JSON");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kUsage;
+  }
+  drive.gnss_latency_s = latency_ms * 1e-3;
+  traffic.has_buildings = !no_buildings;
+  return comma->parsed() ? ImportComma2k19(in, out, drive, as_json)
+                         : ImportSumo(in, out, traffic, as_json);
+}
+
+}  // namespace
+}  // namespace v2vouch::sim
+
+int main(int argc, char** argv) {
+  try {
+    return v2vouch::sim::Run(argc, argv);
+  } catch (const std::exception& error) {  // Out of memory, a disk that vanished.
+    std::fprintf(stderr, "v2vouch-import: %s\n", error.what());
+    return v2vouch::sim::kFailed;
+  }
+}
