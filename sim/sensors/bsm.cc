@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sensors/bsm.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/sensors/subject.h"
+
+namespace v2vouch::sim {
+namespace {
+
+std::int32_t Rounded(double value, double unit, double low, double high) {
+  return static_cast<std::int32_t>(std::llround(std::clamp(value / unit, low, high)));
+}
+
+// Free-space loss at 5.9 GHz: 20 log10(4 pi f / c) = 47.9 dB at 1 m.
+double PathLoss_db(double distance_m) {
+  return 47.9 + 20.0 * std::log10(std::max(1.0, distance_m));
+}
+
+struct Channel {
+  double loss;
+  double rssi_dbm;
+};
+
+Channel Between(const World& world, const Snapshot& snapshot, const Vec2& sender,
+                std::uint32_t sender_id) {
+  const RadioSpec& radio = world.scenario().radio;
+  const Vec2 receiver = snapshot.ego.PointAt(world.scenario().vehicle.antenna_x_m,
+                                             world.scenario().vehicle.antenna_y_m);
+  double factor = 1.0;
+  for (const Wall& wall : world.walls()) {
+    if (LineCrossesOutline(receiver, sender, wall.outline)) {
+      factor *= radio.building_factor;
+      break;
+    }
+  }
+  for (const ActorState& other : snapshot.actors) {
+    if (other.actor->id == sender_id || other.actor->size.height_m < 2.5) continue;
+    const auto corners = other.box().Corners();
+    if (LineCrossesOutline(receiver, sender, {corners.begin(), corners.end()})) {
+      factor *= radio.vehicle_factor;
+      break;
+    }
+  }
+  const double distance = factor * (sender - receiver).norm();
+  const double by_distance =
+      1.0 / (1.0 + std::exp((radio.half_range_m - distance) / radio.range_slope_m));
+  return {radio.base_loss + (1.0 - radio.base_loss) * by_distance,
+          radio.tx_power_dbm - PathLoss_db(distance)};
+}
+
+}  // namespace
+
+void Quantise(const SenderState& state, bsm_t& bsm) {
+  // secMark: milliseconds within the UTC minute of the position's time.
+  bsm.secMark = static_cast<std::int32_t>((state.position_utime / 1000) % 60000);
+  bsm.lat = Rounded(state.latitude_deg, 1e-7, -9e8, 9e8);
+  bsm.long_ = Rounded(state.longitude_deg, 1e-7, -1799999999.0, 1.8e9);
+  bsm.elev = Rounded(state.elevation_m, 0.1, -4095.0, 61439.0);
+  bsm.semiMajor = static_cast<std::int16_t>(Rounded(state.semi_major_m, 0.05, 0.0, 254.0));
+  bsm.semiMinor = bsm.semiMajor;
+  bsm.orientation = 0;
+  bsm.transmission = state.speed_mps < -0.05 ? 3 : 2;
+  bsm.speed = static_cast<std::int16_t>(Rounded(std::abs(state.speed_mps), 0.02, 0.0, 8190.0));
+  bsm.heading = Rounded(ToDegrees(state.heading_rad), 0.0125, 0.0, 28800.0) % 28800;
+  bsm.angle = 127;
+  bsm.accelSet_long =
+      static_cast<std::int16_t>(Rounded(state.accel_long_mps2, 0.01, -2000.0, 2000.0));
+  bsm.accelSet_lat =
+      static_cast<std::int16_t>(Rounded(state.accel_lat_mps2, 0.01, -2000.0, 2000.0));
+  bsm.accelSet_vert = -127;
+  bsm.accelSet_yaw = Rounded(ToDegrees(-state.yaw_rate_radps), 0.01, -32767.0, 32767.0);
+  const bool brakes = state.accel_long_mps2 < -0.8;
+  bsm.wheelBrakes = brakes ? 0b01111 : 0;
+  bsm.traction = 2;
+  bsm.abs = 2;
+  bsm.scs = 2;
+  bsm.brakeBoost = 1;
+  bsm.auxBrakes = 1;
+  bsm.width = static_cast<std::int16_t>(Rounded(state.width_m, 0.01, 1.0, 1023.0));
+  bsm.length = static_cast<std::int16_t>(Rounded(state.length_m, 0.01, 1.0, 4095.0));
+}
+
+Identity IdentityOf(std::uint64_t seed, std::uint32_t vehicle, int number) {
+  Random random = SubjectRandom(seed, "identity", {vehicle, static_cast<std::uint64_t>(number)});
+  Identity identity;
+  std::uint64_t bits = random.Bits();
+  for (auto& octet : identity.id) {
+    octet = static_cast<std::uint8_t>(bits);
+    bits >>= 8;
+  }
+  bits = random.Bits();
+  for (auto& octet : identity.certificate) {
+    octet = static_cast<std::uint8_t>(bits);
+    bits >>= 8;
+  }
+  return identity;
+}
+
+int IdentityNumber(const SenderSpec& sender, double time_s) {
+  return sender.identity_change_s > 0.0 && time_s >= sender.identity_change_s ? 1 : 0;
+}
+
+BsmSender::BsmSender(const World& world, int actor, std::uint64_t seed)
+    : world_(world),
+      actor_(actor),
+      subject_(actor < 0 ? 0 : world.actors()[static_cast<std::size_t>(actor)].id),
+      sender_(actor < 0 ? SenderSpec{} : world.actors()[static_cast<std::size_t>(actor)].sender),
+      seed_(seed),
+      plane_(PlaneOf(world.scenario().origin)),
+      errors_(SubjectRandom(seed, "sender errors", {subject_})),
+      position_(world.scenario().bsm.gnss, sender_.noise_scale,
+                SubjectRandom(seed, "sender gnss", {subject_})),
+      speed_(sender_.noise_scale * world.scenario().bsm.speed_markov_mps,
+             world.scenario().bsm.gnss.markov_time_s, errors_),
+      heading_(sender_.noise_scale * world.scenario().bsm.heading_markov_rad,
+               world.scenario().bsm.gnss.markov_time_s, errors_) {
+  Random start = SubjectRandom(seed, "sender start", {subject_});
+  const double rate = sender_.rate_hz > 0.0 ? sender_.rate_hz : world.scenario().bsm.rate_hz;
+  phase_s_ = start.Uniform() / rate;
+  first_msg_count_ = static_cast<int>(start.Uniform() * 128.0);
+  Advance();
+}
+
+void BsmSender::Advance() {
+  const BsmSpec& spec = world_.scenario().bsm;
+  const double rate = sender_.rate_hz > 0.0 ? sender_.rate_hz : spec.rate_hz;
+  Random random =
+      SubjectRandom(seed_, "sender clock", {subject_, static_cast<std::uint64_t>(count_)});
+  next_time_s_ = phase_s_ + static_cast<double>(count_) / rate +
+                 random.Uniform(-spec.period_jitter_s, spec.period_jitter_s);
+  next_time_s_ = std::max(0.0, next_time_s_);
+}
+
+std::optional<bsm_t> BsmSender::Next() {
+  const BsmSpec& spec = world_.scenario().bsm;
+  const double time = next_time_s_;
+  const std::int64_t number = count_++;
+  const double dt = std::max(1e-3, time - last_time_s_);
+  last_time_s_ = time;
+  Advance();
+
+  // Errors move on with every message, sent or lost, so that loss changes nothing else.
+  const GnssError::Value position_error = position_.Step(dt);
+  const double speed_error = speed_.Step(dt, errors_);
+  const double heading_error = heading_.Step(dt, errors_);
+  Random random = SubjectRandom(seed_, "bsm", {subject_, static_cast<std::uint64_t>(number)});
+  const double speed_noise = random.Normal(0.0, sender_.noise_scale * spec.speed_white_mps);
+  const double heading_noise = random.Normal(0.0, sender_.noise_scale * spec.heading_white_rad);
+  const double latency =
+      sender_.latency_scale * (spec.latency_s + spec.latency_spread_s * random.Uniform());
+  const double luck = random.Uniform();
+  const double fading = random.Normal(0.0, 2.0);
+
+  const Snapshot snapshot = world_.At(time);
+  SenderState state;
+  Vec2 centre;
+  double yaw = 0.0;
+  if (actor_ < 0) {
+    const VehicleConfig& vehicle = world_.scenario().vehicle;
+    centre = snapshot.ego.PointAt(vehicle.centre_x_m, 0.0);
+    yaw = snapshot.ego.yaw_rad;
+    state.speed_mps = snapshot.ego.speed_mps;
+    state.accel_long_mps2 = snapshot.ego.accel_mps2;
+    state.yaw_rate_radps = snapshot.ego.yaw_rate_radps;
+    state.length_m = vehicle.length_m;
+    state.width_m = vehicle.width_m;
+  } else {
+    const Actor& actor = world_.actors()[static_cast<std::size_t>(actor_)];
+    if (!actor.trajectory.Exists(time)) return std::nullopt;
+    const Motion motion = actor.trajectory.At(time);
+    centre = motion.centre;
+    yaw = motion.yaw_rad;
+    state.speed_mps = motion.speed_mps;
+    state.accel_long_mps2 = motion.accel_mps2;
+    state.yaw_rate_radps = motion.yaw_rate_radps;
+    state.length_m = actor.size.length_m;
+    state.width_m = actor.size.width_m;
+  }
+  const Channel channel = Between(world_, snapshot, centre, subject_);
+  if (luck < channel.loss) return std::nullopt;
+
+  const Vec2 bias(sender_.bias_east_m, sender_.bias_north_m);
+  const GeodeticPlace place =
+      GeodeticOf(plane_, centre + bias + position_error.horizontal, position_error.height_m);
+  const auto start_utime = static_cast<std::int64_t>(world_.scenario().start_utc_s) * 1000000;
+  state.position_utime = start_utime + std::llround(time * 1e6);
+  state.latitude_deg = place.latitude_deg;
+  state.longitude_deg = place.longitude_deg;
+  state.elevation_m = place.height_m;
+  state.accel_lat_mps2 = state.speed_mps * state.yaw_rate_radps;
+  const bool stands = std::abs(state.speed_mps) < 0.3;
+  if (!stands || !has_heading_) {  // A standing receiver holds its last heading.
+    held_heading_rad_ = HeadingOf(yaw + place.turn_rad + heading_error + heading_noise);
+    has_heading_ = true;
+  }
+  state.heading_rad = held_heading_rad_;
+  state.speed_mps = stands ? 0.0 : state.speed_mps + speed_error + speed_noise;
+  const GnssErrorSpec& e = spec.gnss;
+  state.semi_major_m = spec.semi_major_m > 0.0 ? spec.semi_major_m
+                                               : std::sqrt(e.bias_sigma_m * e.bias_sigma_m +
+                                                           e.markov_sigma_m * e.markov_sigma_m +
+                                                           e.white_sigma_m * e.white_sigma_m);
+
+  bsm_t bsm{};
+  Quantise(state, bsm);
+  bsm.rx_utime = state.position_utime + std::llround(latency * 1e6);
+  // Signed after most of the delay has passed; the rest is the radio.
+  bsm.generation_utime = state.position_utime + std::llround(0.8 * latency * 1e6);
+  bsm.msgCnt = static_cast<std::int16_t>((first_msg_count_ + number) % 128);
+  const Identity identity = IdentityOf(seed_, subject_, IdentityNumber(sender_, time));
+  std::copy(identity.id.begin(), identity.id.end(), std::begin(bsm.id));
+  std::copy(identity.certificate.begin(), identity.certificate.end(),
+            std::begin(bsm.certificate_digest));
+  bsm.signature_state = 1;
+  bsm.rssi_dbm = static_cast<float>(channel.rssi_dbm + fading);
+  return bsm;
+}
+
+}  // namespace v2vouch::sim

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sensors/camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/sensors/subject.h"
+
+namespace v2vouch::sim {
+namespace {
+
+constexpr double kRay_rad = FromDegrees(0.05);
+
+// Half of the span the rays must cover: the picture's wider side, and a margin.
+double HalfSpan(const CameraConfig& camera) {
+  const double side = std::max(camera.cx_px, camera.image_width_px - camera.cx_px);
+  return std::min(FromDegrees(85.0), std::atan(side / camera.fx_px) * 1.05);
+}
+
+const char* NameOf(ObjectClass object_class) {
+  switch (object_class) {
+    case ObjectClass::kCar:
+      return "car";
+    case ObjectClass::kVan:
+      return "van";
+    case ObjectClass::kTruck:
+      return "truck";
+    case ObjectClass::kBus:
+      return "bus";
+    case ObjectClass::kMotorcycle:
+      return "motorcycle";
+    case ObjectClass::kPedestrian:
+      return "pedestrian";
+    case ObjectClass::kCyclist:
+      return "cyclist";
+    default:
+      return "";
+  }
+}
+
+ObjectClass Confused(ObjectClass object_class) {
+  switch (object_class) {
+    case ObjectClass::kCar:
+      return ObjectClass::kVan;
+    case ObjectClass::kVan:
+      return ObjectClass::kCar;
+    case ObjectClass::kTruck:
+      return ObjectClass::kBus;
+    case ObjectClass::kBus:
+      return ObjectClass::kTruck;
+    case ObjectClass::kMotorcycle:
+      return ObjectClass::kCyclist;
+    case ObjectClass::kCyclist:
+      return ObjectClass::kMotorcycle;
+    default:
+      return object_class;
+  }
+}
+
+Eigen::Vector2d Distorted(const CameraConfig& camera, double x, double y) {
+  if (camera.distortion.empty()) return {x, y};
+  const auto k = [&](std::size_t i) {
+    return i < camera.distortion.size() ? camera.distortion[i] : 0.0;
+  };
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (k(0) + r2 * (k(1) + r2 * k(4)));
+  return {x * radial + 2.0 * k(2) * x * y + k(3) * (r2 + 2.0 * x * x),
+          y * radial + k(2) * (r2 + 2.0 * y * y) + 2.0 * k(3) * x * y};
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector2d> Project(const CameraConfig& camera, const Eigen::Vector3d& p_B,
+                                       double extra_pitch_rad) {
+  const Eigen::Vector3d d = p_B - Eigen::Vector3d(camera.x_m, camera.y_m, camera.z_m);
+  const double cy = std::cos(camera.yaw_rad);
+  const double sy = std::sin(camera.yaw_rad);
+  const double ahead = cy * d.x() + sy * d.y();
+  const double left = -sy * d.x() + cy * d.y();
+  const double cp = std::cos(camera.pitch_rad + extra_pitch_rad);
+  const double sp = std::sin(camera.pitch_rad + extra_pitch_rad);
+  const double forward = cp * ahead - sp * d.z();
+  const double up = sp * ahead + cp * d.z();
+  const double cr = std::cos(camera.roll_rad);
+  const double sr = std::sin(camera.roll_rad);
+  const double right_C = cr * -left + sr * -up;  // Right side rolled down.
+  const double down_C = cr * -up - sr * -left;
+  if (forward < 0.2) return std::nullopt;
+  const Eigen::Vector2d ray = Distorted(camera, right_C / forward, down_C / forward);
+  return Eigen::Vector2d(camera.cx_px + camera.fx_px * ray.x(),
+                         camera.cy_px + camera.fy_px * ray.y());
+}
+
+void CameraSimulator::PixelBox::Add(const Eigen::Vector2d& pixel) {
+  left = std::min(left, pixel.x());
+  right = std::max(right, pixel.x());
+  top = std::min(top, pixel.y());
+  bottom = std::max(bottom, pixel.y());
+  is_empty = false;
+}
+
+CameraSimulator::CameraSimulator(const World& world, int index, std::uint64_t seed)
+    : world_(world),
+      camera_(world.scenario().vehicle.cameras[static_cast<std::size_t>(index)]),
+      index_(static_cast<std::uint64_t>(index)),
+      seed_(seed),
+      skyline_(HalfSpan(camera_), kRay_rad) {}
+
+Eigen::Vector3d CameraSimulator::ToBody(const EgoTruth& ego, const Vec2& point, double z_m) const {
+  const Vec2 forward = Direction(ego.yaw_rad);
+  const Vec2 d = point - ego.axle;
+  return {d.dot(forward), d.dot(LeftOf(forward)), z_m};
+}
+
+void CameraSimulator::LookClosely(const Snapshot& snapshot, double extra_pitch_rad,
+                                  std::vector<Seen>& seen) {
+  const Vec2 origin = snapshot.ego.PointAt(camera_.x_m, camera_.y_m);
+  const double yaw = snapshot.ego.yaw_rad + camera_.yaw_rad;
+  const std::size_t n = snapshot.actors.size();
+  skyline_.Cast(origin, yaw, camera_.max_range_m + 20.0, snapshot, world_.walls());
+  seen.assign(n, {});
+  std::vector<double> whole(n, 0.0);
+  std::vector<double> open(n, 0.0);
+  for (int ray = 0; ray < skyline_.size(); ++ray) {
+    const Vec2 direction = Direction(yaw + skyline_.azimuth_rad(ray));
+    double covered_to = -1e9;  // Tangent of elevation up to which nearer objects cover this ray.
+    for (const Skyline::Hit& hit : skyline_.hits(ray)) {
+      const double low = -camera_.z_m / hit.range_m;
+      const double high = (hit.height_m - camera_.z_m) / hit.range_m;
+      const auto object = static_cast<std::size_t>(hit.object);
+      if (object < n) {
+        whole[object] += high - low;
+        const double from = std::max(low, covered_to);
+        if (from < high) {
+          open[object] += high - from;
+          const Vec2 point = origin + hit.range_m * direction;
+          for (const double tangent : {from, high}) {
+            const auto pixel =
+                Project(camera_, ToBody(snapshot.ego, point, camera_.z_m + tangent * hit.range_m),
+                        extra_pitch_rad);
+            if (pixel) seen[object].box.Add(*pixel);
+          }
+        }
+      }
+      covered_to = std::max(covered_to, high);
+    }
+  }
+  const bool ideal = world_.scenario().sensors.mode == SensorMode::kIdealPoints;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (open[i] <= 0.0) continue;
+    const ActorState& actor = snapshot.actors[i];
+    const double range = (actor.motion.centre - origin).norm();
+    Seen& result = seen[i];
+    result.sight.visible_fraction = open[i] / whole[i];
+    if (result.sight.visible_fraction > 0.98) {
+      // Nothing in front: the exact outline of the cuboid instead of the rays' steps, far roof
+      // edges included.
+      const auto corners = actor.box().Corners();
+      for (std::size_t k = 0; k < 4; ++k) {
+        for (int step = 0; step < 8; ++step) {
+          const Vec2 point = corners[k] + (corners[(k + 1) % 4] - corners[k]) * (step / 8.0);
+          for (const double z : {0.0, actor.actor->size.height_m}) {
+            const auto pixel = Project(camera_, ToBody(snapshot.ego, point, z), extra_pitch_rad);
+            if (pixel) result.box.Add(*pixel);
+          }
+        }
+      }
+    }
+    const double in_picture_px =
+        std::min(result.box.right, 1.0 * camera_.image_width_px) - std::max(result.box.left, 0.0);
+    if (range > camera_.max_range_m || in_picture_px < 3.0) {
+      result.sight = {};
+      continue;
+    }
+    const double height_px = result.box.bottom - result.box.top;
+    if (ideal) {
+      const auto foot = Project(camera_, ToBody(snapshot.ego, actor.motion.centre, 0.0));
+      const bool within = foot && foot->x() > 1.0 && foot->x() < camera_.image_width_px - 1.0 &&
+                          foot->y() > 2.0 && foot->y() < camera_.image_height_px;
+      if (within && result.sight.visible_fraction >= 0.5) {
+        result.sight.detection_probability = camera_.detection_probability;
+      }
+    } else {
+      result.sight.detection_probability =
+          camera_.detection_probability * std::clamp((height_px - 8.0) / 12.0, 0.0, 1.0) *
+          std::clamp((result.sight.visible_fraction - 0.15) / 0.35, 0.0, 1.0);
+    }
+  }
+}
+
+void CameraSimulator::Look(const Snapshot& snapshot, std::vector<Sight>& sights) {
+  LookClosely(snapshot, 0.0, seen_);
+  sights.clear();
+  for (const Seen& seen : seen_) sights.push_back(seen.sight);
+}
+
+void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
+                            camera_detections_t& picture) {
+  const SensorsSpec& sensors = world_.scenario().sensors;
+  const bool ideal = sensors.mode == SensorMode::kIdealPoints;
+  const double sigma_px = sensors.noise_scale * camera_.edge_sigma_px;
+  const double width = camera_.image_width_px;
+  const double height = camera_.image_height_px;
+  picture.seq = seq;
+  picture.sensor = camera_.name;
+  picture.image_width_px = camera_.image_width_px;
+  picture.image_height_px = camera_.image_height_px;
+  picture.boxes.clear();
+  Random common = SubjectRandom(seed_, "camera", {index_, static_cast<std::uint64_t>(seq)});
+  const double nod = common.Normal(0.0, sensors.noise_scale * camera_.pitch_sigma_rad);
+  LookClosely(snapshot, nod, seen_);
+
+  for (std::size_t i = 0; i < snapshot.actors.size(); ++i) {
+    const Seen& seen = seen_[i];
+    const ActorState& actor = snapshot.actors[i];
+    if (seen.sight.detection_probability <= 0.0) continue;
+    Random random = SubjectRandom(seed_, "camera vehicle",
+                                  {index_, static_cast<std::uint64_t>(seq), actor.actor->id});
+    if (!random.Bernoulli(seen.sight.detection_probability)) continue;
+    camera_box_t box{};
+    ObjectClass named = actor.actor->object_class;
+    if (ideal) {
+      const auto foot = Project(camera_, ToBody(snapshot.ego, actor.motion.centre, 0.0), nod);
+      if (!foot) continue;
+      box.left_px = foot->x() - 1.0 + random.Normal(0.0, sigma_px);
+      box.width_px = 2.0;
+      box.top_px = foot->y() - 2.0 + random.Normal(0.0, sigma_px);
+      box.height_px = 2.0;
+      box.score = 0.9;
+    } else {
+      const auto edge = [&](double exact, double low, double high) {
+        const double noise = random.Normal(0.0, sigma_px);  // Drawn always: order stays fixed.
+        if (exact <= low) return low;
+        if (exact >= high) return high;
+        return std::clamp(exact + noise, low, high);
+      };
+      box.left_px = edge(seen.box.left, 0.0, width);
+      box.top_px = edge(seen.box.top, 0.0, height);
+      box.width_px = edge(seen.box.right, 0.0, width) - box.left_px;
+      box.height_px = edge(seen.box.bottom, 0.0, height) - box.top_px;
+      const double size = std::clamp(box.height_px / 60.0, 0.0, 1.0);
+      box.score = std::clamp(
+          0.5 + 0.25 * size + 0.2 * seen.sight.visible_fraction + random.Normal(0.0, 0.05),
+          std::min(0.99, camera_.min_score + 0.02), 0.99);
+      if (random.Bernoulli(0.03 + 0.07 * (1.0 - size))) named = Confused(named);
+      if (box.width_px < 3.0 || box.height_px < 4.0) continue;
+    }
+    box.class_id = static_cast<std::int32_t>(named);
+    box.class_name = NameOf(named);
+    picture.boxes.push_back(box);
+  }
+
+  if (!ideal) {
+    const int count =
+        common.Poisson(std::min(40.0, camera_.clutter_per_image * sensors.clutter_scale));
+    for (int i = 0; i < count; ++i) {  // Posters, shadows, bins: near the horizon, vehicle-shaped.
+      camera_box_t box{};
+      box.height_px = common.Uniform(12.0, 0.12 * height);
+      box.width_px = box.height_px * common.Uniform(0.8, 2.0);
+      box.left_px = common.Uniform(0.0, width - box.width_px);
+      box.top_px = std::clamp(camera_.cy_px + common.Uniform(-0.05, 0.1) * height, 0.0,
+                              height - box.height_px);
+      box.score = std::min(0.99, camera_.min_score + common.Uniform(0.0, 0.3));
+      box.class_id = static_cast<std::int32_t>(ObjectClass::kCar);
+      box.class_name = NameOf(ObjectClass::kCar);
+      picture.boxes.push_back(box);
+    }
+  }
+  picture.num_boxes = static_cast<std::int32_t>(picture.boxes.size());
+}
+
+}  // namespace v2vouch::sim

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <v2vouch/camera_detections_t.hpp>
+#include <vector>
+
+#include "sim/sensors/radar.h"
+#include "sim/sensors/skyline.h"
+#include "sim/world/world.h"
+
+namespace v2vouch::sim {
+
+/// Pixel of a point given in the body frame (x forward, y left, z up from the road), through
+/// mounting, pinhole and OpenCV distortion. `extra_pitch_rad` is the body's nod, down positive.
+/// @return nullopt for points less than 0.2 m ahead of the image plane.
+std::optional<Eigen::Vector2d> Project(const CameraConfig& camera, const Eigen::Vector3d& p_B,
+                                       double extra_pitch_rad = 0.0);
+
+/// One smart camera. Realistic mode: the box is the bounding box of the part of the projected
+/// cuboid that nothing nearer covers, cut at the picture's border; every edge that is not cut has
+/// white noise of `edge_sigma_px`; body pitch moves the whole picture. Detection:
+///     P = detection_probability * clamp((height_px - 8) / 12) * clamp((visible - 0.15) / 0.35)
+/// with the class confused now and then, a score, and false boxes.
+///
+/// Ideal points: box 2 px wide and 2 px high whose bottom centre is the projected ground point
+/// under the vehicle's centre; bottom centre noise `edge_sigma_px` in each direction, common to
+/// both side edges, and body pitch; P as for ideal radar points.
+class CameraSimulator {
+ public:
+  CameraSimulator(const World& world, int index, std::uint64_t seed);
+
+  void Shoot(const Snapshot& snapshot, std::int64_t seq, camera_detections_t& picture);
+  void Look(const Snapshot& snapshot, std::vector<Sight>& sights);
+
+ private:
+  struct PixelBox {
+    double left = 1e9;
+    double top = 1e9;
+    double right = -1e9;
+    double bottom = -1e9;
+    bool is_empty = true;
+    void Add(const Eigen::Vector2d& pixel);
+  };
+  struct Seen {
+    Sight sight;
+    PixelBox box;  ///< Of the visible part, not yet cut at the border.
+  };
+  void LookClosely(const Snapshot& snapshot, double extra_pitch_rad, std::vector<Seen>& seen);
+  [[nodiscard]] Eigen::Vector3d ToBody(const EgoTruth& ego, const Vec2& point, double z_m) const;
+
+  const World& world_;
+  CameraConfig camera_;
+  std::uint64_t index_;
+  std::uint64_t seed_;
+  Skyline skyline_;
+  std::vector<Seen> seen_;
+};
+
+}  // namespace v2vouch::sim

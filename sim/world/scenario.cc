@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/world/scenario.h"
+
+#include <filesystem>
+#include <set>
+
+#include "daemon/config/yaml_writer.h"
+
+namespace v2vouch::sim {
+namespace {
+
+void CheckReferences(const Scenario& scenario, std::vector<std::string>& problems) {
+  std::set<std::string> routes;
+  for (const RouteSpec& route : scenario.routes) {
+    if (!routes.insert(route.name).second) problems.push_back("routes: " + route.name + " twice");
+  }
+  const auto need = [&](const std::string& name, const std::string& who) {
+    if (!routes.contains(name)) problems.push_back(who + ": no route is called '" + name + "'");
+  };
+  if (scenario.ego.trajectory_id == 0) need(scenario.ego.drive.route, "ego.drive.route");
+  if (scenario.ego.trajectory_id != 0 && scenario.trajectories.empty()) {
+    problems.push_back("ego.trajectory_id needs `trajectories`");
+  }
+  std::set<std::uint32_t> ids;
+  for (const VehicleSpec& vehicle : scenario.vehicles) {
+    const std::string who = "vehicle " + std::to_string(vehicle.id);
+    if (!ids.insert(vehicle.id).second) problems.push_back(who + ": id is taken");
+    need(vehicle.drive.route, who);
+  }
+  for (const ParkedSpec& parked : scenario.parked) {
+    if (!ids.insert(parked.id).second) {
+      problems.push_back("parked " + std::to_string(parked.id) + ": id is taken");
+    }
+  }
+  for (const RailSpec& rail : scenario.rails) need(rail.route, "rails");
+  for (const BuildingSpec& building : scenario.buildings) {
+    if (!building.outline.empty() &&
+        (building.outline.size() < 6 || building.outline.size() % 2 != 0)) {
+      problems.push_back("buildings: outline needs x, y of three corners at least");
+    }
+  }
+}
+
+}  // namespace
+
+Size UsualSize(ObjectClass object_class) {
+  switch (object_class) {
+    case ObjectClass::kVan:
+      return {5.4, 2.0, 2.3};
+    case ObjectClass::kTruck:
+      return {12.0, 2.5, 3.6};
+    case ObjectClass::kBus:
+      return {12.0, 2.55, 3.2};
+    case ObjectClass::kMotorcycle:
+      return {2.2, 0.8, 1.4};
+    case ObjectClass::kPedestrian:
+      return {0.5, 0.5, 1.75};
+    case ObjectClass::kCyclist:
+      return {1.8, 0.6, 1.75};
+    default:
+      return {4.5, 1.8, 1.5};
+  }
+}
+
+bool LoadScenario(const std::string& path, Scenario& scenario, std::vector<std::string>& problems) {
+  const std::size_t before = problems.size();
+  scenario.folder = std::filesystem::path(path).parent_path().string();
+  if (!config::Load(path, scenario, problems)) return false;
+  CheckReferences(scenario, problems);
+  for (std::size_t i = before; i < problems.size(); ++i) problems[i] = path + ": " + problems[i];
+  return problems.size() == before;
+}
+
+std::string ToYaml(const Scenario& scenario) { return config::Print(scenario); }
+
+}  // namespace v2vouch::sim

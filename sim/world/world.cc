@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/world/world.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "daemon/base/random.h"
+
+namespace v2vouch::sim {
+namespace {
+
+constexpr std::uint64_t kSubjectV2vShare = 0x5632565368617265ull;  // Per vehicle id.
+
+std::map<std::string, Path> MakePaths(const Scenario& scenario,
+                                      std::vector<std::string>& problems) {
+  std::map<std::string, Path> paths;
+  for (const RouteSpec& route : scenario.routes) {
+    std::vector<Waypoint> waypoints;
+    for (const WaypointSpec& w : route.waypoints) waypoints.push_back({{w.x_m, w.y_m}, w.radius_m});
+    std::string problem;
+    if (!Path::Make(waypoints, paths[route.name], problem)) {
+      problems.push_back("routes: " + route.name + ": " + problem);
+    }
+  }
+  return paths;
+}
+
+Wall MakeWall(const BuildingSpec& building) {
+  Wall wall;
+  wall.height_m = building.height_m;
+  if (building.outline.empty()) {
+    const Box box{
+        {building.x_m, building.y_m}, building.yaw_rad, building.length_m, building.width_m};
+    const auto corners = box.Corners();
+    wall.outline.assign(corners.begin(), corners.end());
+    return wall;
+  }
+  for (std::size_t i = 0; i + 1 < building.outline.size(); i += 2) {
+    wall.outline.emplace_back(building.outline[i], building.outline[i + 1]);
+  }
+  double twice_area = 0.0;
+  for (std::size_t i = 0; i < wall.outline.size(); ++i) {
+    twice_area += Cross(wall.outline[i], wall.outline[(i + 1) % wall.outline.size()]);
+  }
+  if (twice_area < 0.0) std::reverse(wall.outline.begin(), wall.outline.end());
+  return wall;
+}
+
+Rail MakeRail(const RailSpec& spec, const Path& path) {
+  Rail rail;
+  for (double s = spec.from_m; s <= spec.to_m; s += 4.0) {
+    const PathPoint point = path.At(s);
+    rail.points.push_back(point.position + spec.offset_m * LeftOf(Direction(point.yaw_rad)));
+  }
+  return rail;
+}
+
+Actor MakeDriven(const VehicleSpec& spec, const Path& path, double duration_s) {
+  Actor actor;
+  actor.id = spec.id;
+  actor.object_class = spec.object_class;
+  actor.size = UsualSize(spec.object_class);
+  if (spec.length_m > 0.0) actor.size.length_m = spec.length_m;
+  if (spec.width_m > 0.0) actor.size.width_m = spec.width_m;
+  if (spec.height_m > 0.0) actor.size.height_m = spec.height_m;
+  actor.has_v2v = spec.v2v;
+  actor.sender = spec.sender;
+  actor.trajectory = Trajectory::Drive(path, spec.drive, actor.size.length_m,
+                                       kCentreAheadOfAxle * actor.size.length_m, duration_s);
+  return actor;
+}
+
+}  // namespace
+
+Vec2 EgoTruth::PointAt(double x_m, double y_m) const {
+  const Vec2 forward = Direction(yaw_rad);
+  return axle + x_m * forward + y_m * LeftOf(forward);
+}
+
+Vec2 EgoTruth::VelocityAt(const Vec2& point) const {
+  return speed_mps * Direction(yaw_rad) + yaw_rate_radps * LeftOf(point - axle);
+}
+
+std::unique_ptr<World> World::Make(const Scenario& scenario, std::uint64_t seed,
+                                   std::vector<std::string>& problems) {
+  const std::size_t before = problems.size();
+  std::unique_ptr<World> world(new World(scenario));
+  const auto paths = MakePaths(scenario, problems);
+  std::map<std::uint32_t, Recorded> recorded;
+  if (!scenario.trajectories.empty()) {
+    const std::filesystem::path file(scenario.trajectories);
+    LoadTrajectories(file.is_absolute() ? file.string()
+                                        : (std::filesystem::path(scenario.folder) / file).string(),
+                     recorded, problems);
+  }
+  const std::uint32_t ego_id = scenario.ego.trajectory_id;
+  if (ego_id != 0 && !recorded.contains(ego_id)) {
+    problems.push_back("ego.trajectory_id: no vehicle " + std::to_string(ego_id) + " in " +
+                       scenario.trajectories);
+  }
+  if (problems.size() != before) return nullptr;
+
+  const double duration = scenario.duration_s + 1.0;
+  if (ego_id != 0) {
+    world->ego_ = Trajectory::Follow(recorded.at(ego_id).rows);
+  } else {
+    const DriveSpec& drive = scenario.ego.drive;
+    world->ego_ = Trajectory::Drive(paths.at(drive.route), drive, scenario.vehicle.length_m,
+                                    scenario.vehicle.centre_x_m, duration);
+  }
+  for (const VehicleSpec& spec : scenario.vehicles) {
+    world->actors_.push_back(MakeDriven(spec, paths.at(spec.drive.route), duration));
+  }
+  for (const ParkedSpec& spec : scenario.parked) {
+    Actor actor;
+    actor.id = spec.id;
+    actor.object_class = spec.object_class;
+    actor.size = UsualSize(spec.object_class);
+    actor.trajectory = Trajectory::Stand({spec.x_m, spec.y_m}, spec.yaw_rad);
+    world->actors_.push_back(actor);
+  }
+  for (const auto& [id, vehicle] : recorded) {
+    if (id == ego_id) continue;
+    Actor actor;
+    actor.id = id;
+    actor.object_class = vehicle.object_class;
+    actor.size = {vehicle.length_m, vehicle.width_m, UsualSize(vehicle.object_class).height_m};
+    actor.has_v2v = Random::ForSubject(seed, kSubjectV2vShare + id).Bernoulli(scenario.v2v_share);
+    actor.trajectory = Trajectory::Follow(vehicle.rows);
+    world->actors_.push_back(actor);
+  }
+  std::sort(world->actors_.begin(), world->actors_.end(),
+            [](const Actor& a, const Actor& b) { return a.id < b.id; });
+  for (std::size_t i = 1; i < world->actors_.size(); ++i) {
+    if (world->actors_[i].id == world->actors_[i - 1].id) {
+      problems.push_back("vehicle id " + std::to_string(world->actors_[i].id) + " is taken twice");
+      return nullptr;
+    }
+  }
+  for (const BuildingSpec& building : scenario.buildings) {
+    world->walls_.push_back(MakeWall(building));
+  }
+  for (const PoleSpec& pole : scenario.poles) world->poles_.emplace_back(pole.x_m, pole.y_m);
+  for (const RailSpec& rail : scenario.rails) {
+    world->rails_.push_back(MakeRail(rail, paths.at(rail.route)));
+  }
+  return world;
+}
+
+Snapshot World::At(double time_s) const {
+  Snapshot snapshot;
+  snapshot.time_s = time_s;
+  const Motion centre = ego_.At(time_s);
+  EgoTruth& ego = snapshot.ego;
+  ego.yaw_rad = centre.yaw_rad;
+  ego.yaw_rate_radps = centre.yaw_rate_radps;
+  ego.axle = centre.centre - scenario_.vehicle.centre_x_m * Direction(centre.yaw_rad);
+  ego.speed_mps = centre.speed_mps;  // The same for every point of the body's x axis.
+  ego.accel_mps2 = centre.accel_mps2;
+  for (const Actor& actor : actors_) {
+    if (actor.trajectory.Exists(time_s)) {
+      snapshot.actors.push_back({&actor, actor.trajectory.At(time_s)});
+    }
+  }
+  return snapshot;
+}
+
+}  // namespace v2vouch::sim
