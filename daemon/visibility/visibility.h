@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,14 +13,15 @@
 #include "daemon/data/measurement.h"
 #include "daemon/data/track.h"
 #include "daemon/data/vehicle.h"
+#include "daemon/visibility/static_raster.h"
 
 namespace v2vouch {
 
 struct VisibilityConfig {
-  double static_hold_s = 2.0;     ///< A static return keeps occluding this long after its last hit.
-  double static_cell_m = 1.0;     ///< Raster in O of accumulated static returns.
-  int static_min_hits = 3;        ///< Hits before a cell occludes.
-  double margin_m = 0.7;          ///< Blur of every occluder's outline.
+  double static_hold_s = 2.0;  ///< A static return keeps occluding this long after its last hit.
+  double static_cell_m = 1.0;  ///< Raster in O of accumulated static returns.
+  int static_min_hits = 3;     ///< Hits before a cell occludes.
+  double margin_m = 0.7;       ///< Blur of every occluder's outline.
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -50,12 +52,31 @@ struct Occluder {
 };
 
 /// Azimuth-range occlusion round each sensor from tracked boxes and accumulated static returns
-/// (DESIGN 5.3). Copyable and of bounded size: it is part of every checkpoint.
+/// (DESIGN 5.3), on flat ground: boxes and walls block, nothing is seen over or under them.
+///
+/// A footprint is looked at along rays spread over its azimuth span, widened by 3 sigma of its
+/// position. Each ray is
+/// - *covered by a box* that begins nearer than the footprint does. Outlines are blurred by margin
+///   and the box's own sigma: 0.5 on the edge, 1 from there inwards, 0 outwards. A box of the same
+///   id, or one that holds the footprint's centre (the vehicle itself), covers nothing.
+/// - *covered by a structure*: an active static cell with others 3 to 4.5 m off, nearer than the
+///   footprint's nearest point by more than margin + cell + sigma, so that a standing vehicle's
+///   own returns do not hide it.
+/// - *possibly covered* by any other active static cell (a pole): half.
+///
+/// kOutOfView: less than 10 % of the footprint is inside the field of view, or its centre is out of
+/// range. kClear: at least 90 % of the 3-sigma span is inside the field of view and neither covered
+/// nor possibly covered, and 3 sigma stay inside the range. kOccluded: at least 80 % of what is
+/// inside the field of view is covered. Else kUnknown.
+///
+/// Copyable and of bounded size, since it is part of every checkpoint: about 14 kB and 100 bytes
+/// per tracked box.
 class VisibilityMap {
  public:
   VisibilityMap(const VisibilityConfig& config, const VehicleConfig& vehicle);
 
-  /// Adds the standing returns of one scan to the raster in O.
+  /// Adds the standing returns of one scan to the raster in O. Returns inside a box of the present
+  /// scene are that vehicle's own and are left out.
   void AccumulateStatic(Timestamp stamp, const EgoState& ego,
                         std::span<const RadarMeasurement> measurements);
 
@@ -63,7 +84,7 @@ class VisibilityMap {
   void SetScene(const EgoState& ego, std::span<const Occluder> occluders);
 
   /// How radar `index` / camera `index` sees a footprint (centre, yaw, extent) whose position is
-  /// uncertain by `position_sigma_m`; `self` is the track whose own box must not count.
+  /// uncertain by `position_sigma_m`; `id` is the track whose own box must not count.
   [[nodiscard]] SensorView FromRadar(int index, const Occluder& footprint) const;
   [[nodiscard]] SensorView FromCamera(int index, const Occluder& footprint) const;
 
@@ -71,13 +92,52 @@ class VisibilityMap {
   /// occluded if any has it in its field of view, else out of view.
   [[nodiscard]] View Overall(const Occluder& footprint) const;
 
-  /// Coverage by sector of 30 degrees; `radar_alive`, `camera_alive` say which sensors speak.
+  /// Coverage by sector of 30 degrees, twelve from -180 degrees on; `radar_alive`, `camera_alive`
+  /// say which sensors speak. A sensor covers a sector when it covers the sector's middle. Watched:
+  /// of each kind (radar, camera) that is mounted for the sector one is alive. Degraded: of one
+  /// kind only. Blind: none. Range is that of the farthest-reaching living sensor.
   [[nodiscard]] std::vector<SectorHealth> Sectors(std::span<const char> radar_alive,
                                                   std::span<const char> camera_alive) const;
 
  private:
+  struct Sensor {
+    Eigen::Vector2d p_B = Eigen::Vector2d::Zero();
+    double yaw_rad = 0.0;
+    double fov_left_rad = 0.0;  // From the axis, both positive.
+    double fov_right_rad = 0.0;
+    double min_range_m = 0.0;
+    double max_range_m = 0.0;
+    std::size_t viewpoint = 0;
+    [[nodiscard]] bool Sees(double azimuth_rad) const {
+      return azimuth_rad <= fov_left_rad && azimuth_rad >= -fov_right_rad;
+    }
+  };
+
+  // Sensors close to each other share what they see of the static scene: nearest range by bearing
+  // in O, one degree per bin, in centimetres.
+  static constexpr int kBins = 360;
+  struct Viewpoint {
+    Eigen::Vector2d p_B = Eigen::Vector2d::Zero();
+    Eigen::Vector2d built_at_O = Eigen::Vector2d::Zero();
+    std::array<std::uint16_t, kBins> structure_cm{};
+    std::array<std::uint16_t, kBins> any_cm{};
+  };
+
+  void AddSensor(const Sensor& sensor);
+  void RebuildBins(Viewpoint& viewpoint) const;
+  [[nodiscard]] SensorView See(const Sensor& sensor, const Occluder& footprint) const;
+
   VisibilityConfig config_;
-  VehicleConfig vehicle_;
+  std::size_t radar_count_ = 0;
+  std::vector<Sensor> sensors_;  // Radars, then cameras.
+  std::vector<Viewpoint> viewpoints_;
+  StaticRaster raster_;
+
+  // The scene.
+  EgoState ego_;
+  bool has_bins_ = false;
+  Timestamp bins_built_{};
+  std::vector<Occluder> occluders_;
 };
 
 }  // namespace v2vouch

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/visibility/visibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "daemon/base/angle.h"
+#include "daemon/base/check.h"
+#include "daemon/visibility/box.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr double kBinSize = 2.0 * kPi / 360.0;
+constexpr std::uint16_t kNoReturn = std::numeric_limits<std::uint16_t>::max();
+constexpr double kSharedViewpoint_m = 2.5;
+// How old the bins may get, in time and in the ego's path, before they are built again. They hang
+// on directions in O, so the ego's turning does not age them.
+constexpr double kBinsAge_s = 0.1;
+constexpr double kBinsPath_m = 0.3;
+
+constexpr int kRays = 16;
+constexpr std::size_t kMostInTheWay = 12;
+constexpr double kDepthBlur_m = 0.3;
+constexpr double kLeastInView = 0.1;
+constexpr double kClearShare = 0.9;
+constexpr double kOccludedShare = 0.8;
+
+std::size_t BinOf(double bearing_O) {
+  const auto bin = static_cast<int>(std::floor((WrapAngle(bearing_O) + kPi) / kBinSize));
+  return static_cast<std::size_t>(std::clamp(bin, 0, 359));
+}
+
+double Ramp(double x, double half_width) {
+  if (half_width <= 0.0) return x >= 0.0 ? 1.0 : 0.0;
+  return std::clamp(0.5 + 0.5 * x / half_width, 0.0, 1.0);
+}
+
+}  // namespace
+
+VisibilityMap::VisibilityMap(const VisibilityConfig& config, const VehicleConfig& vehicle)
+    : config_(config),
+      radar_count_(vehicle.radars.size()),
+      raster_(config.static_cell_m, config.static_hold_s, config.static_min_hits) {
+  for (const RadarConfig& radar : vehicle.radars) {
+    AddSensor({.p_B = {radar.x_m, radar.y_m},
+               .yaw_rad = radar.yaw_rad,
+               .fov_left_rad = radar.half_fov_rad,
+               .fov_right_rad = radar.half_fov_rad,
+               .min_range_m = radar.min_range_m,
+               .max_range_m = radar.max_range_m});
+  }
+  for (const CameraConfig& camera : vehicle.cameras) {
+    AddSensor({.p_B = {camera.x_m, camera.y_m},
+               .yaw_rad = camera.yaw_rad,
+               .fov_left_rad = std::atan2(camera.cx_px, camera.fx_px),
+               .fov_right_rad = std::atan2(camera.image_width_px - camera.cx_px, camera.fx_px),
+               .min_range_m = 0.0,
+               .max_range_m = camera.max_range_m});
+  }
+}
+
+void VisibilityMap::AddSensor(const Sensor& sensor) {
+  std::size_t index = 0;
+  while (index < viewpoints_.size() &&
+         (viewpoints_[index].p_B - sensor.p_B).norm() > kSharedViewpoint_m) {
+    ++index;
+  }
+  if (index == viewpoints_.size()) {
+    viewpoints_.push_back({.p_B = sensor.p_B});
+    viewpoints_.back().structure_cm.fill(kNoReturn);
+    viewpoints_.back().any_cm.fill(kNoReturn);
+  }
+  sensors_.push_back(sensor);
+  sensors_.back().viewpoint = index;
+}
+
+void VisibilityMap::AccumulateStatic(Timestamp stamp, const EgoState& ego,
+                                     std::span<const RadarMeasurement> measurements) {
+  for (const RadarMeasurement& m : measurements) {
+    if (!m.is_static || m.radar < 0 || static_cast<std::size_t>(m.radar) >= radar_count_) continue;
+    const Sensor& sensor = sensors_[static_cast<std::size_t>(m.radar)];
+    const auto add = [&](double azimuth_rad) {
+      const double bearing_B = sensor.yaw_rad + azimuth_rad;
+      const Point<Odometry> p =
+          ego.X_OB * Point<Body>{sensor.p_B.x() + m.range_m * std::cos(bearing_B),
+                                 sensor.p_B.y() + m.range_m * std::sin(bearing_B)};
+      for (const Occluder& box : occluders_) {
+        if (Holds(box, p.vector(), config_.margin_m + box.position_sigma_m)) return;
+      }
+      raster_.Add(stamp, p.vector());
+    };
+    // A wide flat cluster is a piece of wall across the ray: its reflections, no farther apart than
+    // one clustering radius, stand for the wall between them. Of an oblique one only the mean is
+    // known to lie on it.
+    const double width_m = m.range_m * (m.azimuth_max_rad - m.azimuth_min_rad);
+    if (width_m > config_.static_cell_m && m.radial_extent_m < 2.0) {
+      const int steps = std::min(12, static_cast<int>(width_m / config_.static_cell_m));
+      for (int i = 0; i <= steps; ++i) {
+        add(m.azimuth_min_rad + (m.azimuth_max_rad - m.azimuth_min_rad) * i / steps);
+      }
+    } else {
+      add(m.azimuth_rad);
+    }
+  }
+}
+
+void VisibilityMap::SetScene(const EgoState& ego, std::span<const Occluder> occluders) {
+  ego_ = ego;
+  occluders_.assign(occluders.begin(), occluders.end());
+  const double age_s = ToSeconds(ego.stamp - bins_built_);
+  const bool is_due = !has_bins_ || age_s < 0.0 || age_s >= kBinsAge_s;
+  for (Viewpoint& viewpoint : viewpoints_) {
+    const Point<Odometry> p = ego.X_OB * Point<Body>{viewpoint.p_B.x(), viewpoint.p_B.y()};
+    if (!is_due && (p.vector() - viewpoint.built_at_O).norm() < kBinsPath_m) continue;
+    viewpoint.built_at_O = p.vector();
+    RebuildBins(viewpoint);
+  }
+  if (is_due) bins_built_ = ego.stamp;
+  has_bins_ = true;
+}
+
+void VisibilityMap::RebuildBins(Viewpoint& viewpoint) const {
+  viewpoint.structure_cm.fill(kNoReturn);
+  viewpoint.any_cm.fill(kNoReturn);
+  const Eigen::Vector2d p_OV = viewpoint.built_at_O;
+  raster_.ForEachActive(ego_.stamp, p_OV, [&](const Eigen::Vector2d& p_O, bool is_structure) {
+    const Eigen::Vector2d d = p_O - p_OV;
+    const double range_m = d.norm();
+    if (range_m < config_.static_cell_m || range_m > 600.0) return;
+    const double bearing = std::atan2(d.y(), d.x());
+    const double half_width = 0.5 * config_.static_cell_m / range_m;
+    const auto range_cm = static_cast<std::uint16_t>(range_m * 100.0);
+    const std::size_t first = BinOf(bearing - half_width);
+    const std::size_t last = BinOf(bearing + half_width);
+    for (std::size_t bin = first;; bin = (bin + 1) % kBins) {
+      viewpoint.any_cm[bin] = std::min(viewpoint.any_cm[bin], range_cm);
+      if (is_structure) {
+        viewpoint.structure_cm[bin] = std::min(viewpoint.structure_cm[bin], range_cm);
+      }
+      if (bin == last) break;
+    }
+  });
+}
+
+SensorView VisibilityMap::FromRadar(int index, const Occluder& footprint) const {
+  V2VOUCH_CHECK(index >= 0 && static_cast<std::size_t>(index) < radar_count_);
+  return See(sensors_[static_cast<std::size_t>(index)], footprint);
+}
+
+SensorView VisibilityMap::FromCamera(int index, const Occluder& footprint) const {
+  V2VOUCH_CHECK(index >= 0 && radar_count_ + static_cast<std::size_t>(index) < sensors_.size());
+  return See(sensors_[radar_count_ + static_cast<std::size_t>(index)], footprint);
+}
+
+View VisibilityMap::Overall(const Occluder& footprint) const {
+  View best = View::kOutOfView;
+  const auto rank = [](View view) {
+    switch (view) {
+      case View::kClear:
+        return 3;
+      case View::kUnknown:
+        return 2;
+      case View::kOccluded:
+        return 1;
+      case View::kOutOfView:
+        break;
+    }
+    return 0;
+  };
+  for (const Sensor& sensor : sensors_) {
+    const View view = See(sensor, footprint).view;
+    if (view == View::kClear) return view;
+    if (rank(view) > rank(best)) best = view;
+  }
+  return best;
+}
+
+SensorView VisibilityMap::See(const Sensor& sensor, const Occluder& footprint) const {
+  const Point<Odometry> origin = ego_.X_OB * Point<Body>{sensor.p_B.x(), sensor.p_B.y()};
+  const Eigen::Vector2d p_OS = origin.vector();
+  const double sigma_m = footprint.position_sigma_m;
+  if (Holds(footprint, p_OS, 0.1)) return {View::kUnknown, 1.0};  // Upon ourselves.
+
+  const Silhouette target(footprint, p_OS, footprint.centre_O);
+  const double azimuth = WrapAngle(target.bearing_O - ego_.X_OB.yaw_rad() - sensor.yaw_rad);
+  if (target.centre_m > sensor.max_range_m || target.centre_m < sensor.min_range_m) return {};
+  const double widened = std::min(3.0 * sigma_m / target.centre_m, 0.5 * kPi);
+  const double right = std::max(target.right_rad - widened, -kPi);
+  const double left = std::min(target.left_rad + widened, kPi);
+  // Out of sight altogether, which most questions are: a sensor of at most a half circle, and
+  // the whole span beyond one of its edges.
+  if (sensor.fov_left_rad + sensor.fov_right_rad < kPi && left - right < kPi) {
+    const double past_left = azimuth + right - sensor.fov_left_rad;
+    const double past_right = -sensor.fov_right_rad - (azimuth + left);
+    if ((past_left > 0.0 && azimuth + left < 2.0 * kPi - sensor.fov_right_rad) ||
+        (past_right > 0.0 && azimuth + right > -2.0 * kPi + sensor.fov_left_rad)) {
+      return {};
+    }
+  }
+
+  // Boxes that may be in the way.
+  std::array<Silhouette, kMostInTheWay> in_the_way;
+  std::size_t count = 0;
+  for (const Occluder& box : occluders_) {
+    if (count == kMostInTheWay) break;
+    if (box.id != 0 && box.id == footprint.id) continue;
+    const Eigen::Vector2d d = box.centre_O - p_OS;
+    const double radius_m =
+        0.5 * (box.length_m + box.width_m) + config_.margin_m + box.position_sigma_m;
+    const double reach_m = target.farthest_m + 3.0 * sigma_m + radius_m;
+    if (d.squaredNorm() > reach_m * reach_m) continue;
+    // Beside the fan of rays: farther from its middle line than half the fan and the radius.
+    const double along_m = d.dot(target.ray);
+    const double aside_m = std::abs(target.ray.x() * d.y() - target.ray.y() * d.x());
+    const double half_fan = std::max(left, -right);
+    if (half_fan < 1.0) {
+      if (along_m < -radius_m) continue;
+      // Distance from a line at angle half_fan, tan bounded since half_fan < 1 rad.
+      const double outside_m = aside_m * std::cos(half_fan) - along_m * std::sin(half_fan);
+      if (outside_m > radius_m) continue;
+    }
+    if (Holds(box, footprint.centre_O, 0.0) || Holds(box, p_OS, 0.0)) continue;
+    in_the_way[count++] = Silhouette(box, p_OS, footprint.centre_O);
+  }
+
+  const Viewpoint& viewpoint = viewpoints_[sensor.viewpoint];
+  const double static_limit_cm =
+      100.0 * (target.nearest_m - config_.margin_m - config_.static_cell_m - sigma_m);
+  double weight_sum = 0.0;
+  double seen_sum = 0.0;
+  double covered_sum = 0.0;
+  double uncovered_sum = 0.0;
+  double clear_count = 0.0;
+  for (int k = 0; k < kRays; ++k) {
+    const double a = right + (left - right) * (k + 0.5) / kRays;
+    const double inside_m = std::min(a - target.right_rad, target.left_rad - a) * target.centre_m;
+    const double weight = Ramp(inside_m, 3.0 * sigma_m);
+    weight_sum += weight;
+    if (!sensor.Sees(WrapAngle(azimuth + a))) continue;
+
+    double covered = 0.0;
+    if (count > 0) {
+      const Eigen::Vector2d ray(std::cos(target.bearing_O + a), std::sin(target.bearing_O + a));
+      const double target_m = target.EntryAlong(ray).value_or(target.centre_m);
+      for (std::size_t i = 0; i < count; ++i) {
+        const Silhouette& box = in_the_way[i];
+        const double entry_m = box.EntryAlong(ray).value_or(box.centre_m);
+        const double within_m = std::min(a - box.right_rad, box.left_rad - a) * entry_m;
+        const double depth_blur_m = kDepthBlur_m + sigma_m + box.box.position_sigma_m;
+        covered = std::max(covered, Ramp(within_m, config_.margin_m + box.box.position_sigma_m) *
+                                        Ramp(target_m - entry_m, depth_blur_m));
+      }
+    }
+    const std::size_t bin = BinOf(target.bearing_O + a);
+    double possibly = covered;
+    if (viewpoint.any_cm[bin] < static_limit_cm) possibly = 1.0;
+    if (viewpoint.structure_cm[bin] < static_limit_cm) covered = 1.0;
+
+    seen_sum += weight;
+    covered_sum += weight * covered;
+    uncovered_sum += weight * (1.0 - 0.5 * (covered + possibly));
+    clear_count += 1.0 - possibly;
+  }
+
+  if (!(seen_sum >= kLeastInView * weight_sum) || seen_sum <= 0.0) return {};
+  SensorView result = {View::kUnknown, uncovered_sum / weight_sum};
+  const bool stays_in_range = target.centre_m + 3.0 * sigma_m <= sensor.max_range_m &&
+                              target.nearest_m - 3.0 * sigma_m >= sensor.min_range_m;
+  if (clear_count >= kClearShare * kRays && stays_in_range) {
+    result.view = View::kClear;
+  } else if (covered_sum >= kOccludedShare * seen_sum) {
+    result.view = View::kOccluded;
+  }
+  return result;
+}
+
+}  // namespace v2vouch
