@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "daemon/base/angle.h"
+#include "sim/world/geometry.h"
 
 namespace v2vouch::sim {
 namespace {
@@ -14,6 +15,8 @@ using Motions = std::vector<std::vector<CentreSample>>;
 
 constexpr double kMinTurn_rad = FromDegrees(60.0);
 constexpr double kMaxTurn_rad = FromDegrees(135.0);
+constexpr double kBefore_s = 8.0;  // Recorded, and clear of others, before the middle of a turn ...
+constexpr double kAfter_s = 4.0;   // ... and after it.
 constexpr double kAround_s = 15.0;
 constexpr double kOncomingRange_m = 80.0;
 constexpr double kOncomingAngle_rad = FromDegrees(135.0);
@@ -23,8 +26,6 @@ constexpr double kArmTo_m = 50.0;
 constexpr int kBearings = 72;  // Of 5 degrees.
 constexpr double kHouse_m = 22.0;
 constexpr double kFarthestHouse_m = 60.0;
-
-Eigen::Vector2d Direction(double yaw_rad) { return {std::cos(yaw_rad), std::sin(yaw_rad)}; }
 
 // The sample nearest in time, or nullptr when the vehicle is not there then.
 const CentreSample* At(const std::vector<CentreSample>& motion, double time_s) {
@@ -52,6 +53,23 @@ double OncomingSeconds(const Motions& motions, std::size_t ego, double middle_s)
     }
   }
   return seconds;
+}
+
+Box Footprint(const CentreSample& sample, const FcdBody& body) {
+  return {sample.centre, sample.yaw_rad, body.length_m, body.width_m};
+}
+
+// Whether the turner's footprint meets another's round its turn.
+bool Touches(const Motions& motions, const std::vector<FcdBody>& bodies, const LeftTurn& turn) {
+  for (const CentreSample& own : motions[turn.vehicle]) {
+    if (own.time_s < turn.middle_s - kBefore_s || own.time_s > turn.middle_s + kAfter_s) continue;
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      const CentreSample* const other = k == turn.vehicle ? nullptr : At(motions[k], own.time_s);
+      if (other == nullptr || (other->centre - own.centre).norm() > 25.0) continue;
+      if (Overlap(Footprint(own, bodies[turn.vehicle]), Footprint(*other, bodies[k]))) return true;
+    }
+  }
+  return false;
 }
 
 // Bearings from the centre that traffic uses, as the middles of runs of used bins.
@@ -110,14 +128,23 @@ std::optional<LeftTurn> FindLeftTurn(const Motions& motions, std::size_t vehicle
   return std::nullopt;
 }
 
-std::optional<LeftTurn> BusiestLeftTurn(const Motions& motions) {
+std::optional<LeftTurn> BusiestLeftTurn(const Motions& motions,
+                                        const std::vector<FcdBody>& bodies) {
   std::optional<LeftTurn> best;
+  bool is_best_clear = false;
   for (std::size_t k = 0; k < motions.size(); ++k) {
     const auto turn = FindLeftTurn(motions, k);
     if (!turn) continue;
-    const bool is_recorded = turn->middle_s - motions[k].front().time_s >= 8.0 &&
-                             motions[k].back().time_s - turn->middle_s >= 4.0;
-    if (is_recorded && (!best || turn->oncoming_s > best->oncoming_s)) best = turn;
+    const bool is_recorded = turn->middle_s - motions[k].front().time_s >= kBefore_s &&
+                             motions[k].back().time_s - turn->middle_s >= kAfter_s;
+    if (!is_recorded) continue;
+    const bool is_clear = !Touches(motions, bodies, *turn);
+    const bool is_better = !best || (is_clear && !is_best_clear) ||
+                           (is_clear == is_best_clear && turn->oncoming_s > best->oncoming_s);
+    if (is_better) {
+      best = turn;
+      is_best_clear = is_clear;
+    }
   }
   return best;
 }

@@ -23,8 +23,10 @@ std::optional<LeftTurn> FindLeftTurn(const std::vector<std::vector<CentreSample>
                                      std::size_t vehicle);
 
 /// The left-turner that meets most oncoming traffic and is recorded at least 8 s before and 4 s
-/// after the middle of its turn; ties go to the first.
-std::optional<LeftTurn> BusiestLeftTurn(const std::vector<std::vector<CentreSample>>& motions);
+/// after the middle of its turn; ties go to the first. One whose footprint touches another's within
+/// these 12 s is passed over (SUMO lets waiting turners stand in the way) unless all do.
+std::optional<LeftTurn> BusiestLeftTurn(const std::vector<std::vector<CentreSample>>& motions,
+                                        const std::vector<FcdBody>& bodies);
 
 /// Rectangle with `yaw_rad` along its length.
 struct CornerBuilding {

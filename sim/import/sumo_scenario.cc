@@ -57,12 +57,12 @@ struct Cut {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();
 };
 
-bool ChooseCut(const std::vector<FcdVehicle>& vehicles,
+bool ChooseCut(const std::vector<FcdVehicle>& vehicles, const std::vector<FcdBody>& bodies,
                const std::vector<std::vector<CentreSample>>& motions, const SumoOptions& options,
                Cut& cut, std::string& error) {
   std::optional<LeftTurn> turn;
   if (options.ego == "auto") {
-    turn = BusiestLeftTurn(motions);
+    turn = BusiestLeftTurn(motions, bodies);
     if (!turn) {
       error = "no vehicle turns left with 8 s before and 4 s after; name one as the ego";
       return false;
@@ -155,7 +155,7 @@ bool MakeSumoScenario(const std::vector<FcdVehicle>& vehicles, const SumoOptions
     motions.push_back(CentreMotion(vehicles[k], body));
   }
   Cut cut;
-  if (!ChooseCut(vehicles, motions, options, cut, error)) return false;
+  if (!ChooseCut(vehicles, bodies, motions, options, cut, error)) return false;
   // The ego is the car that carries the sensors, whatever SUMO had in its place.
   const VehicleConfig car;
   bodies[cut.ego] = {ObjectClass::kCar, car.length_m, car.width_m};

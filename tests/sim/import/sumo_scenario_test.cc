@@ -9,6 +9,8 @@
 
 #include "daemon/base/angle.h"
 #include "sim/import/intersection.h"
+#include "sim/world/scenario.h"
+#include "sim/world/trajectory.h"
 #include "tests/sim/import/files.h"
 
 namespace v2vouch::sim {
@@ -62,11 +64,25 @@ std::vector<std::vector<CentreSample>> MotionsOf(const std::vector<FcdVehicle>& 
 }
 
 TEST(BusiestLeftTurn, IsTheOnlyVehicleThatTurnsLeftAndMeetsTheOncomingOne) {
-  const auto turn = BusiestLeftTurn(MotionsOf(Crossing()));
+  const auto turn = BusiestLeftTurn(MotionsOf(Crossing()), std::vector<FcdBody>(5));
   ASSERT_TRUE(turn);
   EXPECT_EQ(turn->vehicle, 1u);
   EXPECT_NEAR(turn->middle_s, 11.2, 1.0);
   EXPECT_GT(turn->oncoming_s, 5.0);
+}
+
+TEST(BusiestLeftTurn, PassesOverOneThatTouchesAnother) {
+  auto vehicles = Crossing();
+  FcdVehicle parked{"parked", "car", {}};  // In the way of the first turner.
+  for (int k = 0; k <= 200; ++k) {
+    parked.samples.push_back({0.1 * k, {-12.0, -1.6}, 0.0, 51.0, 7.0});
+  }
+  vehicles.push_back(parked);
+  vehicles.push_back(LeftTurner("farther out"));
+  for (FcdSample& sample : vehicles.back().samples) sample.front.y() -= 20.0;
+  const auto turn = BusiestLeftTurn(MotionsOf(vehicles), std::vector<FcdBody>(7));
+  ASSERT_TRUE(turn);
+  EXPECT_EQ(turn->vehicle, 6u);
 }
 
 TEST(CornerBuildings, StandInAllFourCornersClearOfEveryWay) {
@@ -169,6 +185,32 @@ TEST(MakeSumoScenario, CologneGivesALeftTurnWithTrafficRoundIt) {
   EXPECT_GT(scenario.duration_s, 12.0);
   EXPECT_GE(scenario.vehicles, 10u);
   EXPECT_GE(scenario.buildings, 2u);
+  const ScratchFolder folder("cologne");
+  const std::string file = folder.Write("scenario.yaml", scenario.yaml);
+  folder.Write("trajectories.csv", scenario.trajectories_csv);
+  Scenario loaded;
+  std::vector<std::string> problems;
+  EXPECT_TRUE(LoadScenario(file, loaded, problems)) << testing::PrintToString(problems);
+}
+
+// What is written is what the simulator reads.
+TEST(MakeSumoScenario, TheSimulatorLoadsItWithEveryVehicle) {
+  SumoScenario made;
+  std::string error;
+  ASSERT_TRUE(MakeSumoScenario(Crossing(), {}, made, error)) << error;
+  const ScratchFolder folder("crossing");
+  Scenario scenario;
+  std::vector<std::string> problems;
+  ASSERT_TRUE(LoadScenario(folder.Write("scenario.yaml", made.yaml), scenario, problems))
+      << testing::PrintToString(problems);
+  EXPECT_EQ(scenario.ego.trajectory_id, 1u);
+  EXPECT_EQ(scenario.v2v_share, 0.5);
+  EXPECT_EQ(scenario.buildings.size(), 4u);
+  std::map<std::uint32_t, Recorded> vehicles;
+  ASSERT_TRUE(
+      LoadTrajectories(folder.Write("trajectories.csv", made.trajectories_csv), vehicles, problems))
+      << testing::PrintToString(problems);
+  EXPECT_EQ(vehicles.size(), 5u);
 }
 
 }  // namespace
