@@ -27,11 +27,11 @@ enum class TrustState : std::int8_t {
 struct PublishedTrack {
   LocalTrack track;            ///< `track.id` is the list's own id.
   std::uint64_t local_id = 0;  ///< PRIORITY: the LOCAL track it rests on; 0 = none.
-  std::optional<Timestamp> last_v2v;
+  std::optional<Timestamp> last_v2v{};
   SenderId sender = 0;
   TrustState trust = TrustState::kNone;
   double bridge_budget_s = kNaN;
-  std::optional<Wgs84> position;  ///< In geodetic terms, where an alignment exists.
+  std::optional<Wgs84> position{};  ///< In geodetic terms, where an alignment exists.
   double bias_east_m = kNaN;
   double bias_north_m = kNaN;
 };
