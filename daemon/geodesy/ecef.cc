@@ -61,6 +61,17 @@ Wgs84 ToWgs84(const EcefPoint& point) {
   return {std::atan2(sin_phi, cos_phi), p > 0.0 ? WrapAngle(std::atan2(Y, X)) : 0.0, h};
 }
 
+double HorizontalDistance(const Eigen::Vector3d& from_E, const Eigen::Vector3d& to_E) {
+  // The normal of the ellipsoid at sea level below; off by at most the height's share of 3e-6 rad
+  // per km, so there is no need to solve for the latitude.
+  Eigen::Vector3d up(from_E.x(), from_E.y(), from_E.z() / (1.0 - kE2));
+  const double norm = up.norm();
+  if (norm <= 0.0) return (to_E - from_E).norm();
+  up /= norm;
+  const Eigen::Vector3d d = to_E - from_E;
+  return (d - d.dot(up) * up).norm();
+}
+
 Eigen::Matrix3d EastNorthUp(const Wgs84& position) {
   const double sin_phi = std::sin(position.latitude_rad);
   const double cos_phi = std::cos(position.latitude_rad);

@@ -27,6 +27,10 @@ EcefPoint ToEcef(const Wgs84& position);
 /// 50 km from the centre). On the axis the longitude is 0. Bowring (1976), iterated.
 Wgs84 ToWgs84(const EcefPoint& point);
 
+/// Distance of two points less its part along the vertical at `from_E`: what it is on the ground,
+/// whatever the heights.
+double HorizontalDistance(const Eigen::Vector3d& from_E, const Eigen::Vector3d& to_E);
+
 /// R_EN: axes east, north, up at a position, as columns in E. At a pole, east and north are those
 /// of the meridian that `longitude_rad` names.
 Eigen::Matrix3d EastNorthUp(const Wgs84& position);

@@ -11,27 +11,28 @@
 #include "daemon/data/claim.h"
 #include "daemon/data/input.h"
 #include "daemon/data/track.h"
-#include "daemon/models/ctra.h"
+#include "daemon/geodesy/ecef.h"
+#include "daemon/v2v/repeat_memory.h"
 
 namespace v2vouch {
 
 struct IntakeConfig {
   int max_senders = 2048;
-  double max_rate_hz = 12.0;            ///< Sustained messages per sender; bursts of `burst`.
+  double max_rate_hz = 12.0;  ///< Sustained messages per sender; bursts of `burst`.
   double burst = 10.0;
   double max_total_rate_hz = 15000.0;
-  int max_new_senders_per_s = 64;       ///< New identities admitted per second once half full.
-  double max_age_s = 1.5;               ///< Older content is refused.
+  int max_new_senders_per_s = 64;  ///< New identities admitted per second once half full.
+  double max_age_s = 1.5;          ///< Older content is refused.
   double max_future_s = 0.3;
-  double default_age_s = 0.15;          ///< Where neither generation time nor secMark is there.
-  double max_distance_m = 1000.0;       ///< Farther senders are of no use.
-  double repeat_memory_s = 120.0;       ///< How long a message is remembered against replay.
-  double own_echo_m = 2.0;              ///< A sender this close to our own place and course is us.
+  double default_age_s = 0.15;     ///< Where neither generation time nor secMark is there.
+  double max_distance_m = 1000.0;  ///< Farther senders are of no use.
+  double repeat_memory_s = 120.0;  ///< How long a message is remembered against replay.
+  double own_echo_m = 2.0;         ///< A sender this close to our own place and course is us.
   double sender_timeout_s = 5.0;
-  double min_position_sigma_m = 0.5;    ///< Reported accuracy is clamped to this range.
+  double min_position_sigma_m = 0.5;  ///< Reported accuracy is clamped to this range.
   double max_position_sigma_m = 3.0;
   double unknown_position_sigma_m = 2.0;
-  std::uint32_t own_id = 0;             ///< Our own TemporaryID where fixed; 0 = unknown.
+  std::uint32_t own_id = 0;  ///< Our own TemporaryID where fixed; 0 = unknown.
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -53,7 +54,8 @@ struct IntakeConfig {
   }
 };
 
-/// Where the ego believes to be, for the own-echo and distance checks.
+/// Where the ego believes to be, for the own-echo and distance checks and for the height of senders
+/// that do not tell theirs.
 struct EgoPlace {
   Eigen::Vector3d p_E = Eigen::Vector3d::Zero();  ///< Centre of the ego's footprint.
   Eigen::Vector3d course_E = Eigen::Vector3d::UnitX();
@@ -61,39 +63,86 @@ struct EgoPlace {
   bool is_known = false;
 };
 
-/// One sender as heard. Function of its own messages alone (never of the ego), so it is never
-/// rolled back. State lives in a plane anchored where the sender was first heard.
+/// One sender as heard. Function of its own messages alone (never of the ego, but for the height of
+/// a sender that does not tell it), so it is never rolled back. State lives in a plane anchored
+/// where the sender was first heard, moved along every 2 km.
 struct SenderTrack {
   SenderId sender = 0;
   Claim latest;
-  KinematicState state;       ///< CTRA over the claims, in its own plane, at latest.received.
-  Eigen::Vector3d p_E = Eigen::Vector3d::Zero();       ///< Filtered position at latest.received.
-  Eigen::Vector3d course_E = Eigen::Vector3d::UnitX(); ///< Filtered direction.
+  LocalPlane plane{Wgs84{}};
+  KinematicState state;  ///< CTRA over the claims, in its own plane, at latest.received.
+  Eigen::Vector3d p_E = Eigen::Vector3d::Zero();        ///< Filtered position at latest.received.
+  Eigen::Vector3d course_E = Eigen::Vector3d::UnitX();  ///< Filtered direction.
   std::uint64_t messages = 0;
   Timestamp first_received{};
-  double clean_run = 0.0;     ///< Consecutive messages consistent with the sender's own motion.
+  double clean_run = 0.0;  ///< Consecutive messages consistent with the sender's own motion.
+  double nis_mean =
+      0.0;  ///< Of the last ten or so messages; 4 where consistent (3 without course).
+  std::uint64_t resets = 0;     ///< Times the motion broke off: jumps, long silences.
+  std::uint64_t lost = 0;       ///< Messages missing by msgCnt.
+  std::uint64_t over_rate = 0;  ///< Messages refused because the sender speaks too often.
+  int msg_count = 0;            ///< Of the latest message.
+  /// The same core data was heard under another id too; who copied whom is not known.
+  std::uint64_t contested = 0;
+  std::optional<Timestamp> last_contested;
 };
 
-/// Takes BSMs in: J2735 range and plausibility checks, freshness, own echo, repeats (temporary id,
-/// msgCnt, secMark and place), per-sender and total rate, bounded sender table (DESIGN 5.6,
-/// notes/spoofing.md C1-C4). A function of the BSM stream alone but for the ego's place.
+/// Takes BSMs in (DESIGN 5.6, notes C1-C5). A function of the BSM stream alone but for the ego's
+/// place. In this order, cheapest first, each refusal with its reason:
+///
+/// - invalid signature: kBsmSignature; position or speed unavailable: kBsmUnavailable; not finite:
+///   kNotFinite; speed over 70 m/s, acceleration over 12 m/s^2, lateral over 9: kBsmImplausible
+/// - age by generation time, else secMark (wrapped to half a minute; a leap second counts as the
+///   next minute's first), else default_age_s: kBsmStale, kBsmFuture
+/// - ego's place unknown: kNoGnss; our own message: kBsmOwnEcho; too far: kBsmImplausible
+/// - heard before (same id, msgCnt, secMark, place): kBsmRepeat
+/// - rates, of the sender and of all: kBsmRate. Once half of the total budget is spent, only known
+///   senders are served
+/// - new identities beyond their budget, or no room: kBsmTableFull. A full table gives up the
+///   sender unheard for longest, never a pinned one, never one heard in the last second
+///
+/// Cost O(log senders) and a fixed filter step; no allocation after construction.
 class BsmIntake {
  public:
   explicit BsmIntake(const IntakeConfig& config);
 
-  /// The claim, or why there is none. Cost O(1), no allocation in the steady state.
+  /// The claim, or why there is none. BSMs come in order of reception.
   Result<Claim> Accept(const Bsm& bsm, const EgoPlace& ego);
 
-  /// Drops senders not heard for the timeout.
+  /// Drops senders not heard for the timeout. Cheap to call with every message: it looks twice a
+  /// second of `now`.
   void Expire(Timestamp now);
+
+  /// A pinned sender keeps its place in a full table while it is heard. No-op when unknown.
+  void Pin(SenderId sender, bool is_pinned);
 
   /// Ordered by sender id.
   [[nodiscard]] std::span<const SenderTrack> senders() const { return senders_; }
   [[nodiscard]] const SenderTrack* Find(SenderId sender) const;
 
  private:
+  // Kept beside senders_, same order: what the checks need, small enough to search fast.
+  struct Account {
+    SenderId sender = 0;
+    bool is_pinned = false;
+    double tokens = 0.0;
+    Timestamp last{};
+  };
+
+  [[nodiscard]] std::size_t IndexOf(SenderId sender) const;
+  [[nodiscard]] bool Holds(std::size_t index, SenderId sender) const;
+  [[nodiscard]] std::optional<Reason> MakeRoom(Timestamp now);
+  void Remove(std::size_t index);
+  void Contest(std::uint16_t id_tag, SenderTrack& copy);
+
   IntakeConfig config_;
   std::vector<SenderTrack> senders_;
+  std::vector<Account> accounts_;
+  RepeatMemory repeats_;
+  double total_tokens_ = 0.0;
+  double new_tokens_ = 0.0;
+  std::optional<Timestamp> refilled_;
+  std::optional<Timestamp> swept_;
 };
 
 }  // namespace v2vouch

@@ -233,6 +233,20 @@ TEST(LocalPlaneProperty, RoundTripsAndKeepsDistances) {
   }
 }
 
+TEST(HorizontalDistance, TakesTheHeightOut) {
+  Random random(12);
+  for (int i = 0; i < 500; ++i) {
+    const LocalPlane plane(FromDegreesAt(random.Uniform(-90.0, 90.0), random.Uniform(-180.0, 180.0),
+                                         random.Uniform(0.0, 3e3)));
+    const double x = random.Uniform(-1000.0, 1000.0);
+    const double y = random.Uniform(-1000.0, 1000.0);
+    const Eigen::Vector3d from = plane.ToEcefPoint(LocalPoint{}).p_E;
+    const Eigen::Vector3d to =
+        plane.ToEcefPoint(LocalPoint{{x, y, random.Uniform(-3000.0, 3000.0)}}).p_E;
+    EXPECT_NEAR(HorizontalDistance(from, to), std::hypot(x, y), 0.05);
+  }
+}
+
 TEST(EastNorthUp, IsARightHandedRotationEverywhere) {
   for (const Wgs84& place : Globe()) {
     const Eigen::Matrix3d R = EastNorthUp(place);

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/v2v/bsm_checks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/base/angle.h"
+
+namespace v2vouch {
+namespace {
+
+// What no road vehicle does (plausibility limits of the misbehaviour catalogue, C14).
+constexpr double kMaxSpeed_mps = 70.0;
+constexpr double kMaxAccel_mps2 = 12.0;
+constexpr double kMaxLateralAccel_mps2 = 9.0;
+constexpr double kMaxYawRate_radps = 1.5;
+constexpr double kMaxTurning_mps2 = 12.0;
+constexpr double kPoorAccuracy_m = 5.0;
+constexpr double kEchoSpeed_mps = 1.0;
+constexpr double kEchoCourse_rad = FromDegrees(15.0);
+constexpr double kEchoCourseSpeed_mps = 2.0;  // Below, courses say little.
+
+bool IsFinite(const std::optional<double>& value) { return !value || std::isfinite(*value); }
+
+}  // namespace
+
+std::optional<Reason> ContentProblem(const Bsm& bsm) {
+  if (bsm.signature == SignatureState::kInvalid) return Reason::kBsmSignature;
+  if (!bsm.latitude_rad || !bsm.longitude_rad || !bsm.speed_mps) return Reason::kBsmUnavailable;
+  for (const auto* value :
+       {&bsm.latitude_rad, &bsm.longitude_rad, &bsm.elevation_m, &bsm.semi_major_m, &bsm.speed_mps,
+        &bsm.course_rad, &bsm.accel_long_mps2, &bsm.accel_lat_mps2, &bsm.yaw_rate_radps,
+        &bsm.length_m, &bsm.width_m}) {
+    if (!IsFinite(*value)) return Reason::kNotFinite;
+  }
+  if (std::abs(*bsm.latitude_rad) > kPi / 2.0 || std::abs(*bsm.longitude_rad) > 2.0 * kPi) {
+    return Reason::kBsmRange;
+  }
+  if (std::abs(*bsm.speed_mps) > kMaxSpeed_mps ||
+      std::abs(bsm.accel_long_mps2.value_or(0.0)) > kMaxAccel_mps2 ||
+      std::abs(bsm.accel_lat_mps2.value_or(0.0)) > kMaxLateralAccel_mps2) {
+    return Reason::kBsmImplausible;
+  }
+  return std::nullopt;
+}
+
+double ClaimedAge(const Bsm& bsm, const IntakeConfig& config) {
+  if (bsm.generation) return ToSeconds(bsm.stamp - *bsm.generation);
+  if (!bsm.sec_mark_ms) return config.default_age_s;
+  // secMark names a millisecond within some minute: the nearest one. The leap second, 60000 to
+  // 60999, shares its count of UTC microseconds with the first second of the next minute.
+  constexpr std::int64_t kMinute_us = 60'000'000;
+  const std::int64_t claimed_us = std::int64_t{*bsm.sec_mark_ms} * 1000 % kMinute_us;
+  std::int64_t age_us = (ToMicros(bsm.stamp) - claimed_us) % kMinute_us;
+  if (age_us < 0) age_us += kMinute_us;
+  if (age_us > kMinute_us / 2) age_us -= kMinute_us;
+  return static_cast<double>(age_us) * 1e-6;
+}
+
+Claim ToClaim(const Bsm& bsm, double age_s, const EgoPlace& ego, const IntakeConfig& config) {
+  Claim claim;
+  claim.sender = bsm.sender;
+  claim.certificate = bsm.certificate;
+  claim.received = bsm.stamp;
+  claim.age_s = std::max(0.0, age_s);  // Clocks differ by a little.
+  claim.has_elevation = bsm.elevation_m.has_value();
+  claim.height_m = bsm.elevation_m.value_or(0.0);
+  // A sender of unknown height is put at ours: at 0 it could be half a kilometre below the road.
+  Wgs84 place{*bsm.latitude_rad, *bsm.longitude_rad, claim.height_m};
+  if (!claim.has_elevation) place.height_m = ToWgs84({ego.p_E}).height_m;
+  claim.p_E = ToEcef(place).p_E;
+
+  // J2735 gives the direction of motion and a speed without sign; ours is the vehicle's x axis.
+  const bool is_reverse = bsm.transmission == Transmission::kReverse;
+  claim.speed_mps = is_reverse ? -*bsm.speed_mps : *bsm.speed_mps;
+  claim.has_course = bsm.course_rad.has_value();
+  if (claim.has_course) {
+    const double yaw = *bsm.course_rad + (is_reverse ? kPi : 0.0);
+    const Eigen::Matrix3d R_EN = EastNorthUp(place);
+    claim.course_E = std::cos(yaw) * R_EN.col(0) + std::sin(yaw) * R_EN.col(1);
+  }
+  claim.accel_mps2 = bsm.accel_long_mps2.value_or(0.0);
+  const double yaw_rate = bsm.yaw_rate_radps.value_or(0.0);
+  const bool is_possible = std::abs(yaw_rate) <= kMaxYawRate_radps &&
+                           std::abs(yaw_rate * claim.speed_mps) <= kMaxTurning_mps2;
+  claim.yaw_rate_radps = is_possible ? yaw_rate : 0.0;
+  claim.position_sigma_m =
+      bsm.semi_major_m
+          ? std::clamp(*bsm.semi_major_m, config.min_position_sigma_m,
+                       std::max(config.min_position_sigma_m, config.max_position_sigma_m))
+          : config.unknown_position_sigma_m;
+  claim.accuracy_is_poor = bsm.semi_major_m.value_or(0.0) > kPoorAccuracy_m;
+  claim.length_m = bsm.length_m;
+  claim.width_m = bsm.width_m;
+  return claim;
+}
+
+bool IsOwnEcho(const Claim& claim, const EgoPlace& ego, const IntakeConfig& config) {
+  if (config.own_id != 0 && claim.sender == config.own_id) return true;
+  const Eigen::Vector3d now_E =
+      claim.p_E + (claim.has_course ? claim.speed_mps * claim.age_s : 0.0) * claim.course_E;
+  if (HorizontalDistance(ego.p_E, now_E) > config.own_echo_m) return false;
+  if (std::abs(claim.speed_mps - ego.speed_mps) > kEchoSpeed_mps) return false;
+  if (!claim.has_course || std::abs(ego.speed_mps) < kEchoCourseSpeed_mps) return true;
+  return claim.course_E.dot(ego.course_E) > std::cos(kEchoCourse_rad);
+}
+
+}  // namespace v2vouch

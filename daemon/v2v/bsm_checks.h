@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "daemon/base/reason.h"
+#include "daemon/data/claim.h"
+#include "daemon/data/input.h"
+#include "daemon/v2v/intake.h"
+
+namespace v2vouch {
+
+/// What a BSM lacks or says that cannot be, by itself. nullopt: nothing.
+std::optional<Reason> ContentProblem(const Bsm& bsm);
+
+/// Reception minus claimed time of the content [s]; negative where the content is from the future.
+double ClaimedAge(const Bsm& bsm, const IntakeConfig& config);
+
+/// The claim of a BSM without content problem. A yaw rate that cannot be (over 1.5 rad/s, or
+/// over 12 m/s^2 sideways) is taken for none.
+Claim ToClaim(const Bsm& bsm, double age_s, const EgoPlace& ego, const IntakeConfig& config);
+
+/// The claim is our own: same place, speed and course, less the way since its time.
+bool IsOwnEcho(const Claim& claim, const EgoPlace& ego, const IntakeConfig& config);
+
+}  // namespace v2vouch
