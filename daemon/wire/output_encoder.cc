@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/wire/output_encoder.h"
+
+#include <algorithm>
+
+#include "daemon/base/angle.h"
+#include "daemon/wire/codec.h"
+#include "daemon/wire/sensor_conversion.h"
+#include "v2vouch/calibration_t.hpp"
+#include "v2vouch/camera_detections_t.hpp"
+#include "v2vouch/daemon_status_t.hpp"
+#include "v2vouch/misbehavior_report_t.hpp"
+#include "v2vouch/text_t.hpp"
+
+namespace v2vouch::wire {
+namespace {
+
+// Below the decoder's limit, so that nothing of ours is refused by a reader of ours.
+constexpr std::size_t kMaxTextBytes = (1u << 20) - 1;
+constexpr std::size_t kMaxNameBytes = 255;
+constexpr std::size_t kMaxTracks = 8192;
+
+template <class Count, class Vector>
+void SetCount(Count& count, const Vector& vector) {
+  count = static_cast<Count>(vector.size());
+}
+
+std::int64_t MicrosOrNever(const std::optional<Timestamp>& stamp) {
+  return stamp ? ToMicros(*stamp) : 0;
+}
+
+void PutSender(SenderId sender, std::uint8_t* octets) {
+  for (int i = 0; i < 4; ++i) octets[i] = static_cast<std::uint8_t>(sender >> (24 - 8 * i));
+}
+
+std::string Name(std::string_view text) { return std::string(text.substr(0, kMaxNameBytes)); }
+
+void PutKinematics(const KinematicState& state, const Pose<Odometry, Body>& X_OB, track_t& to) {
+  const StateVector& x = state.mean;
+  const Point<Body> p_BT = X_OB.Inverse() * Point<Odometry>{x[kX], x[kY]};
+  to.x_body_m = p_BT.x_m;
+  to.y_body_m = p_BT.y_m;
+  to.yaw_body_rad = WrapAngle(x[kYaw] - X_OB.yaw_rad());
+  to.x_odom_m = x[kX];
+  to.y_odom_m = x[kY];
+  to.yaw_odom_rad = WrapAngle(x[kYaw]);
+  to.speed_mps = x[kSpeed];
+  to.yaw_rate_radps = x[kYawRate];
+  to.accel_mps2 = x[kAccel];
+
+  const StateMatrix& P_O = state.covariance;
+  const Eigen::Matrix2d R_BO = X_OB.rotation().transpose();
+  StateMatrix P_B = P_O;
+  P_B.topLeftCorner<2, 2>() = R_BO * P_O.topLeftCorner<2, 2>() * R_BO.transpose();
+  P_B.topRightCorner<2, 4>() = R_BO * P_O.topRightCorner<2, 4>();
+  P_B.bottomLeftCorner<4, 2>() = P_O.bottomLeftCorner<4, 2>() * R_BO.transpose();
+  for (int row = 0; row < kStateSize; ++row) {
+    for (int column = 0; column < kStateSize; ++column) {
+      to.covariance_odom[row * kStateSize + column] = P_O(row, column);
+      to.covariance_body[row * kStateSize + column] = P_B(row, column);
+    }
+  }
+}
+
+track_t ToWire(const PublishedTrack& from, const Pose<Odometry, Body>& X_OB) {
+  track_t to{};
+  const LocalTrack& track = from.track;
+  to.id = static_cast<std::int64_t>(track.id);
+  to.local_id = static_cast<std::int64_t>(from.local_id);
+  to.start_utime = ToMicros(track.start);
+  PutKinematics(track.state_O, X_OB, to);
+  to.length_m = track.extent.length_m;
+  to.width_m = track.extent.width_m;
+  to.length_sigma_m = track.extent.length_sigma_m;
+  to.width_sigma_m = track.extent.width_sigma_m;
+  to.object_class = static_cast<std::int8_t>(track.object_class);
+  to.existence = track.existence;
+  to.visibility = static_cast<std::int8_t>(track.visibility);
+  to.is_confirmed = track.is_confirmed ? 1 : 0;
+  to.last_radar_utime = MicrosOrNever(track.last_radar);
+  to.last_camera_utime = MicrosOrNever(track.last_camera);
+  to.last_v2v_utime = MicrosOrNever(from.last_v2v);
+  PutSender(from.sender, to.v2v_id);
+  to.trust_state = static_cast<std::int8_t>(from.trust);
+  to.bridge_budget_s = from.bridge_budget_s;
+  to.latitude_rad = from.position ? from.position->latitude_rad : kNaN;
+  to.longitude_rad = from.position ? from.position->longitude_rad : kNaN;
+  to.bias_east_m = from.bias_east_m;
+  to.bias_north_m = from.bias_north_m;
+  return to;
+}
+
+}  // namespace
+
+track_list_t ToWire(const TrackList& list) {
+  track_list_t to{};
+  to.utime = ToMicros(list.stamp);
+  to.seq = list.seq;
+  to.revision = list.revision;
+  to.stale = list.stale ? 1 : 0;
+  to.ego_gnss_suspect = list.ego_gnss_suspect ? 1 : 0;
+  to.ego_x_odom_m = list.X_OB.x_m();
+  to.ego_y_odom_m = list.X_OB.y_m();
+  to.ego_yaw_odom_rad = list.X_OB.yaw_rad();
+  to.sectors.reserve(list.sectors.size());
+  for (const SectorHealth& sector : list.sectors) {
+    sector_health_t health{};
+    health.from_rad = sector.from_rad;
+    health.to_rad = sector.to_rad;
+    health.range_m = sector.range_m;
+    health.state = static_cast<std::int8_t>(sector.state);
+    to.sectors.push_back(health);
+  }
+  SetCount(to.num_sectors, to.sectors);
+  const std::size_t count = std::min(list.tracks.size(), kMaxTracks);
+  to.tracks.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) to.tracks.push_back(ToWire(list.tracks[i], list.X_OB));
+  SetCount(to.num_tracks, to.tracks);
+  return to;
+}
+
+void EncodeList(const TrackList& list, std::vector<std::uint8_t>& bytes) {
+  Encode(ToWire(list), bytes);
+}
+
+void EncodeReport(const MisbehaviorReport& report, std::vector<std::uint8_t>& bytes) {
+  misbehavior_report_t to{};
+  to.utime = ToMicros(report.stamp);
+  PutSender(report.sender, to.sender_id);
+  std::copy(report.certificate.begin(), report.certificate.end(), to.certificate_digest);
+  to.check = Name(report.check);
+  to.verdict = static_cast<std::int8_t>(report.verdict);
+  for (const Evidence& evidence : report.evidence) {
+    evidence_t figure{};
+    figure.name = Name(evidence.name);
+    figure.value = evidence.value;
+    to.evidence.push_back(figure);
+  }
+  SetCount(to.num_evidence, to.evidence);
+  Encode(to, bytes);
+}
+
+void EncodeDetections(const CameraDetections& detections, const std::string& sensor,
+                      std::vector<std::uint8_t>& bytes) {
+  camera_detections_t to{};
+  to.utime = ToMicros(detections.stamp);
+  to.seq = detections.seq;
+  to.sensor = Name(sensor);
+  to.image_width_px = detections.image_width_px;
+  to.image_height_px = detections.image_height_px;
+  for (const CameraBox& from : detections.boxes) {
+    camera_box_t box{};
+    box.left_px = from.left_px;
+    box.top_px = from.top_px;
+    box.width_px = from.width_px;
+    box.height_px = from.height_px;
+    box.class_id = -1;
+    box.class_name = NameOfClass(from.object_class);
+    box.score = from.score;
+    to.boxes.push_back(box);
+  }
+  SetCount(to.num_boxes, to.boxes);
+  Encode(to, bytes);
+}
+
+void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes) {
+  daemon_status_t to{};
+  to.utime = ToMicros(status.stamp);
+  to.seq = status.seq;
+  to.version = Name(status.version);
+  to.calibration = Name(status.calibration);
+  for (const InputStatus& from : status.inputs) {
+    input_status_t input{};
+    input.channel = Name(from.channel);
+    input.received = from.received;
+    input.accepted = from.accepted;
+    input.gaps = from.gaps;
+    input.rate_hz = from.rate_hz;
+    input.age_s = from.age_s;
+    input.is_silent = from.is_silent ? 1 : 0;
+    to.inputs.push_back(input);
+  }
+  SetCount(to.num_inputs, to.inputs);
+  for (std::size_t i = 0; i < kReasonCount; ++i) {
+    if (status.refusals[i] == 0) continue;
+    count_t count{};
+    count.name = Name(ReasonName(static_cast<Reason>(i)));
+    count.count = static_cast<std::int64_t>(status.refusals[i]);
+    to.refusals.push_back(count);
+  }
+  SetCount(to.num_refusals, to.refusals);
+  to.queue_drops_own = status.queue_drops_own;
+  to.queue_drops_bsm = status.queue_drops_bsm;
+  to.kernel_drops = status.kernel_drops;
+  to.receive_buffer_bytes = status.receive_buffer_bytes;
+  for (const StageLatency& from : status.latencies) {
+    stage_latency_t latency{};
+    latency.stage = Name(from.stage);
+    latency.p50_us = from.p50_us;
+    latency.p99_us = from.p99_us;
+    latency.max_us = from.max_us;
+    to.latencies.push_back(latency);
+  }
+  SetCount(to.num_latencies, to.latencies);
+  to.local_tracks = status.local_tracks;
+  to.priority_tracks = status.priority_tracks;
+  to.v2v_senders = status.v2v_senders;
+  to.ego_gnss_suspect = status.ego_gnss_suspect ? 1 : 0;
+  to.digest_inputs = status.digest_inputs;
+  to.digest_local = Name(status.digest_local);
+  to.digest_priority = Name(status.digest_priority);
+  Encode(to, bytes);
+}
+
+void EncodeCalibration(const CalibrationInForce& calibration, std::vector<std::uint8_t>& bytes) {
+  calibration_t to{};
+  to.utime = ToMicros(calibration.stamp);
+  to.source = Name(calibration.source);
+  to.checksum = Name(calibration.checksum);
+  for (const CalibrationParameter& from : calibration.parameters) {
+    calibration_parameter_t parameter{};
+    parameter.name = Name(from.name);
+    parameter.value = from.value;
+    parameter.std = from.std;
+    parameter.verdict = Name(from.verdict);
+    to.parameters.push_back(parameter);
+  }
+  SetCount(to.num_parameters, to.parameters);
+  Encode(to, bytes);
+}
+
+void EncodeText(Timestamp stamp, const std::string& name, const std::string& text,
+                std::vector<std::uint8_t>& bytes) {
+  text_t to{};
+  to.utime = ToMicros(stamp);
+  to.name = Name(name);
+  to.text = text.substr(0, kMaxTextBytes);
+  to.text.erase(std::remove(to.text.begin(), to.text.end(), '\0'), to.text.end());
+  Encode(to, bytes);
+}
+
+}  // namespace v2vouch::wire

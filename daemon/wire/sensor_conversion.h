@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "daemon/base/result.h"
+#include "daemon/data/input.h"
+#include "daemon/data/vehicle.h"
+#include "v2vouch/camera_detections_t.hpp"
+#include "v2vouch/ego_motion_t.hpp"
+#include "v2vouch/gnss_fix_t.hpp"
+#include "v2vouch/radar_scan_t.hpp"
+
+namespace v2vouch::wire {
+
+/// Well-formed messages of the own sensors -> data, with the content judged: finite, in a range
+/// that physics allows, and from the sensor whose channel it came on. The sensor's sign
+/// conventions, range offset and clock offset (data/vehicle.h) are applied here and nowhere else.
+/// One bad detection or box is left out and counted in `dropped`; the others stay.
+Result<RadarScan> FromWire(const radar_scan_t& message, const RadarConfig& radar, int index,
+                           Timestamp received, ReasonCounts& dropped);
+Result<CameraDetections> FromWire(const camera_detections_t& message, const CameraConfig& camera,
+                                  int index, Timestamp received, ReasonCounts& dropped);
+Result<EgoMotion> FromWire(const ego_motion_t& message, Timestamp received);
+
+/// Heading (clockwise from north) becomes yaw (counter-clockwise from east).
+Result<GnssFix> FromWire(const gnss_fix_t& message, Timestamp received);
+
+/// kUnknown for a name we do not know; COCO's names for the same things are taken too.
+ObjectClass ClassOfName(std::string_view name);
+std::string_view NameOfClass(ObjectClass object_class);
+
+/// Whether a stamp can be a time at all: after 1970 and before 2200.
+bool IsPlausibleTime(std::int64_t utime);
+
+}  // namespace v2vouch::wire

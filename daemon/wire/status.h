@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "daemon/base/reason.h"
+#include "daemon/base/time.h"
+
+namespace v2vouch::wire {
+
+/// What daemon_status_t says, as plain values.
+struct InputStatus {
+  std::string channel;
+  std::int64_t received = 0;
+  std::int64_t accepted = 0;
+  std::int64_t gaps = 0;
+  double rate_hz = 0.0;
+  double age_s = 0.0;  ///< NaN: nothing came yet.
+  bool is_silent = false;
+};
+
+struct StageLatency {
+  std::string stage;
+  double p50_us = 0.0;
+  double p99_us = 0.0;
+  double max_us = 0.0;
+};
+
+struct Status {
+  Timestamp stamp{};
+  std::int64_t seq = 0;
+  std::string version;
+  std::string calibration;
+  std::vector<InputStatus> inputs;
+  ReasonCounts refusals{};
+  std::int64_t queue_drops_own = 0;
+  std::int64_t queue_drops_bsm = 0;
+  std::int64_t kernel_drops = -1;
+  std::int64_t receive_buffer_bytes = -1;
+  std::vector<StageLatency> latencies;
+  int local_tracks = 0;
+  int priority_tracks = 0;
+  int v2v_senders = 0;
+  bool ego_gnss_suspect = false;
+  std::int64_t digest_inputs = 0;
+  std::string digest_local;
+  std::string digest_priority;
+};
+
+/// What calibration_t says.
+struct CalibrationParameter {
+  std::string name;
+  double value = 0.0;
+  double std = 0.0;
+  std::string verdict;
+};
+
+struct CalibrationInForce {
+  Timestamp stamp{};
+  std::string source;
+  std::string checksum;
+  std::vector<CalibrationParameter> parameters;
+};
+
+}  // namespace v2vouch::wire
