@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "daemon/base/time.h"
+#include "daemon/base/visit.h"
+#include "daemon/data/track.h"
+
+namespace v2vouch {
+
+/// How long and how far V2V may carry a vehicle that no sensor sees (DESIGN 5.9,
+/// notes/spoofing.md 4.3).
+struct BridgeConfig {
+  double base_s = 2.0;             ///< Budget = base_s + co-observed time, ...
+  double least_s = 4.5;            ///< ... at least this once validated, ...
+  double most_s = 10.0;            ///< ... never more than this.
+  double support_s = 0.35;         ///< A hit younger than this is sensor support.
+  int regain_hits = 3;             ///< Hits after a gap that count as support again.
+  double max_gap_s = 1.0;          ///< Between messages while hidden.
+  double max_silence_s = 2.0;      ///< Between messages while seen; then it is LOCAL's alone.
+  double max_sigma_m = 3.0;        ///< Position less certain than this is worth nothing.
+  double reach_along_m = 3.0;      ///< Reachable set round the sensor-only coast: along ...
+  double reach_along_mps2 = 2.5;   ///< ... + half of this t^2,
+  double reach_across_m = 1.5;     ///< across ...
+  double reach_across_mps2 = 3.0;  ///< ... + half of this t^2: an honest turn stays inside.
+  int max_misfits = 3;             ///< Claims in a row that do not fit the bridge end it.
+  double look_s = 0.3;             ///< C11: at most one look at a place per this time.
+  double least_detection = 0.5;    ///< C11: floor of the detection probability.
+  double false_detection = 0.05;   ///< C11: chance of a hit where nothing is.
+  double empty_log_ratio = -4.6;   ///< C11: the place is empty; withdraw.
+  double contradiction_m = 5.0;    ///< The real vehicle seen this far from the bridge ends it.
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("base_s", base_s, {.at_least = 0.0, .at_most = 30.0});
+    a.Field("least_s", least_s, {.at_least = 0.0, .at_most = 30.0});
+    a.Field("most_s", most_s, {.at_least = 0.0, .at_most = 30.0});
+    a.Field("support_s", support_s, {.above = 0.0, .at_most = 2.0});
+    a.Field("regain_hits", regain_hits, {.at_least = 1, .at_most = 20});
+    a.Field("max_gap_s", max_gap_s, {.above = 0.1, .at_most = 10.0});
+    a.Field("max_silence_s", max_silence_s, {.above = 0.1, .at_most = 30.0});
+    a.Field("max_sigma_m", max_sigma_m, {.above = 0.1, .at_most = 20.0});
+    a.Field("reach_along_m", reach_along_m, {.at_least = 0.0, .at_most = 20.0});
+    a.Field("reach_along_mps2", reach_along_mps2, {.at_least = 0.0, .at_most = 20.0});
+    a.Field("reach_across_m", reach_across_m, {.at_least = 0.0, .at_most = 20.0});
+    a.Field("reach_across_mps2", reach_across_mps2, {.at_least = 0.0, .at_most = 20.0});
+    a.Field("max_misfits", max_misfits, {.at_least = 1, .at_most = 100});
+    a.Field("look_s", look_s, {.above = 0.01, .at_most = 5.0});
+    a.Field("least_detection", least_detection, {.above = 0.0, .below = 1.0});
+    a.Field("false_detection", false_detection, {.at_least = 0.0, .below = 0.5});
+    a.Field("empty_log_ratio", empty_log_ratio, {.below = 0.0, .at_least = -100.0});
+    a.Field("contradiction_m", contradiction_m, {.above = 0.5, .at_most = 50.0});
+  }
+};
+
+/// T = min(most, base + co-observed), at least `least`.
+double BridgeBudget_s(double co_observed_s, const BridgeConfig& config);
+
+/// Whether a vehicle can have got to `p_O` in `elapsed_s` since a sensor saw it.
+/// @param coast the state at last support, predicted to now without V2V: axes of the set.
+bool IsReachable(const KinematicState& coast, double elapsed_s, const Eigen::Vector2d& p_O,
+                 const BridgeConfig& config);
+
+/// Negative evidence (C11): how often the claimed place was in clear view and nothing was there.
+/// Copyable, fixed size.
+class EmptyPlace {
+ public:
+  /// One look in clear view without a detection; counted at most once per look_s.
+  void OnMiss(Timestamp stamp, double detection_probability, const BridgeConfig& config);
+  void OnHit() { log_ratio_ = 0.0; }
+  [[nodiscard]] double log_ratio() const { return log_ratio_; }
+
+ private:
+  double log_ratio_ = 0.0;
+  std::optional<Timestamp> last_look_;
+};
+
+}  // namespace v2vouch

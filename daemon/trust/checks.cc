@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/trust/checks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace v2vouch {
+namespace {
+
+// How far a residual exceeds limits that are looser along track: 1 = at the limit.
+double Excess(const Eigen::Vector2d& residual_O, const CoObservation& now, double limit_m,
+              const TrustConfig& config) {
+  const double c = std::cos(now.track_yaw_rad);
+  const double s = std::sin(now.track_yaw_rad);
+  const double along_m = c * residual_O.x() + s * residual_O.y();
+  const double across_m = -s * residual_O.x() + c * residual_O.y();
+  const double across_limit_m = limit_m + now.alignment_sigma_m;
+  const double along_limit_m =
+      across_limit_m + config.stale_position_s * std::abs(now.track_speed_mps);
+  return std::hypot(along_m / along_limit_m, across_m / across_limit_m);
+}
+
+std::optional<Finding> JudgeResidual(std::string_view check, const Eigen::Vector2d& residual_O,
+                                     const CoObservation& now, double withdraw_m, double accuse_m,
+                                     const TrustConfig& config) {
+  if (Excess(residual_O, now, accuse_m, config) > 1.0) {
+    return Finding{check, Verdict::kAccuse, "residual_m", residual_O.norm(), accuse_m};
+  }
+  if (Excess(residual_O, now, withdraw_m, config) > 1.0) {
+    return Finding{check, Verdict::kWithdraw, "residual_m", residual_O.norm(), withdraw_m};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& config) {
+  const double dt_s = has_any_ ? std::max(0.0, ToSeconds(observation.stamp - last_)) : 0.0;
+  // A plain mean at first, so that one wild first residual does not linger; fading afterwards.
+  const double span_s = std::max(std::min(time_s_ + dt_s, config.mean_time_s), 1e-3);
+  const double w = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / span_s) : 1.0;
+  if (dt_s <= 1.0) time_s_ += dt_s;
+  mean_ += w * (observation.residual_O - mean_);
+  speed_ += w * (observation.speed_residual_mps - speed_);
+  speed_sigma_ += w * (observation.speed_sigma_mps - speed_sigma_);
+  if (observation.yaw_residual_rad) {
+    const double w_yaw = has_yaw_ ? w : 1.0;
+    yaw_ += w_yaw * (*observation.yaw_residual_rad - yaw_);
+    yaw_sigma_ += w_yaw * (observation.yaw_sigma_rad - yaw_sigma_);
+    has_yaw_ = true;
+  }
+  if (!has_any_) block_start_ = observation.stamp;
+  if (ToSeconds(observation.stamp - block_start_) >= 1.0 && block_size_ > 0) {
+    blocks_[block_count_++ % kBlocks] = block_sum_ / block_size_;
+    block_sum_.setZero();
+    block_size_ = 0;
+    block_start_ = observation.stamp;
+  }
+  block_sum_ += observation.residual_O;
+  ++block_size_;
+  has_any_ = true;
+  last_ = observation.stamp;
+}
+
+std::optional<Eigen::Vector2d> ResidualHistory::reference_O() const {
+  if (block_count_ < 2) return std::nullopt;
+  const std::uint64_t oldest = block_count_ > kBlocks ? block_count_ - kBlocks : 0;
+  return 0.5 * (blocks_[oldest % kBlocks] + blocks_[(oldest + 1) % kBlocks]);
+}
+
+std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObservation& now,
+                                  const TrustConfig& config) {
+  if (!history.is_settled()) return std::nullopt;
+  return JudgeResidual("residual_level", history.mean_O(), now, config.level_withdraw_m,
+                       config.level_accuse_m, config);
+}
+
+std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObservation& now,
+                                  const TrustConfig& config) {
+  const auto reference_O = history.reference_O();
+  if (!reference_O) return std::nullopt;
+  return JudgeResidual("residual_drift", history.mean_O() - *reference_O, now,
+                       config.drift_withdraw_m, config.drift_accuse_m, config);
+}
+
+std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObservation& now,
+                                     const TrustConfig& config) {
+  if (!history.is_settled()) return std::nullopt;
+  const double speed_mps = std::abs(history.speed_mps());
+  const double slack_mps = 2.0 * history.speed_sigma_mps();
+  if (speed_mps > config.speed_accuse_mps + slack_mps) {
+    return Finding{"speed_residual", Verdict::kAccuse, "speed_residual_mps", speed_mps,
+                   config.speed_accuse_mps + slack_mps};
+  }
+  if (speed_mps > config.speed_withdraw_mps + slack_mps) {
+    return Finding{"speed_residual", Verdict::kWithdraw, "speed_residual_mps", speed_mps,
+                   config.speed_withdraw_mps + slack_mps};
+  }
+  if (!history.has_yaw() || std::abs(now.track_speed_mps) < config.heading_min_speed_mps) {
+    return std::nullopt;
+  }
+  const double yaw_rad = std::abs(history.yaw_rad());
+  const double slack_rad = 2.0 * history.yaw_sigma_rad();
+  if (yaw_rad > config.heading_accuse_rad + slack_rad) {
+    return Finding{"heading_residual", Verdict::kAccuse, "heading_residual_rad", yaw_rad,
+                   config.heading_accuse_rad + slack_rad};
+  }
+  if (yaw_rad > config.heading_withdraw_rad + slack_rad) {
+    return Finding{"heading_residual", Verdict::kWithdraw, "heading_residual_rad", yaw_rad,
+                   config.heading_withdraw_rad + slack_rad};
+  }
+  return std::nullopt;
+}
+
+std::optional<Finding> CheckJump(double distance_m, double dt_s, const TrustConfig& config) {
+  const double limit_m = std::max(config.jump_m, config.jump_speed_mps * std::max(0.0, dt_s));
+  if (distance_m <= limit_m) return std::nullopt;
+  return Finding{"position_jump", Verdict::kWithdraw, "displacement_m", distance_m, limit_m};
+}
+
+}  // namespace v2vouch

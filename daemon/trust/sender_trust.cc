@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/trust/sender_trust.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace v2vouch {
+namespace {
+
+constexpr int kMaxDoublings = 16;
+
+double Doubled(double base_s, int times, double most_s) {
+  return std::min(most_s, base_s * std::exp2(std::max(times - 1, 0)));
+}
+
+}  // namespace
+
+void SenderTrust::OnMessage(Timestamp stamp, bool is_consistent, const TrustConfig& config) {
+  consistent_run_ = is_consistent ? std::min(consistent_run_ + 1, 1'000'000) : 0;
+  const double in_state_s = ToSeconds(stamp - state_since_);
+  switch (state_) {
+    case TrustState::kUnknown:
+      if (consistent_run_ >= config.candidate_messages) state_ = TrustState::kCandidate;
+      break;
+    case TrustState::kSuspect: {
+      const double clean_s = Doubled(config.clean_s, suspicions_, config.max_clean_s);
+      if (in_state_s >= config.suspect_s && ToSeconds(stamp - last_finding_) >= clean_s) {
+        state_ = TrustState::kCandidate;
+        history_ = {};
+      }
+      break;
+    }
+    case TrustState::kRevoked:
+      if (in_state_s >= Doubled(config.revoked_s, accusations_, config.max_revoked_s)) {
+        state_ = TrustState::kUnknown;
+        consistent_run_ = 0;
+        history_ = {};
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+void SenderTrust::OnCoObservation(const CoObservation& observation, bool may_accuse,
+                                  const TrustConfig& config) {
+  history_.Add(observation, config);
+  std::optional<Finding> gravest;
+  for (const auto check : {CheckLevel, CheckDrift, CheckVelocity}) {
+    const auto finding = check(history_, observation, config);
+    if (finding && (!gravest || finding->severity > gravest->severity)) gravest = finding;
+  }
+  if (!gravest || gravest->severity != Verdict::kAccuse || !may_accuse) accusable_since_.reset();
+  if (!gravest) return;
+  if (gravest->severity == Verdict::kAccuse && may_accuse) {
+    if (!accusable_since_) accusable_since_ = observation.stamp;
+    if (ToSeconds(observation.stamp - *accusable_since_) >= config.accuse_hold_s) {
+      return Revoke(observation.stamp, *gravest);
+    }
+  }
+  Suspect(observation.stamp, *gravest);
+}
+
+void SenderTrust::OnFinding(Timestamp stamp, const Finding& finding, bool may_accuse) {
+  if (finding.severity == Verdict::kAccuse && may_accuse) return Revoke(stamp, finding);
+  Suspect(stamp, finding);
+}
+
+bool SenderTrust::TryValidate(const ValidationEvidence& evidence, const TrustConfig& config) {
+  if (state_ != TrustState::kCandidate || evidence.is_ego_gnss_suspect) return false;
+  if (consistent_run_ < config.candidate_messages || evidence.is_accuracy_poor) return false;
+  if (evidence.co_observations < config.co_observations) return false;
+  if (evidence.span_s < config.co_observed_s) return false;
+  if (!evidence.is_nis_consistent || evidence.margin < evidence.min_margin) return false;
+  if (!evidence.is_assigned || !evidence.are_sensors_sure) return false;
+  state_ = TrustState::kValidated;
+  return true;
+}
+
+void SenderTrust::OnSensorsLost() {
+  if (state_ == TrustState::kValidated) state_ = TrustState::kBridged;
+}
+
+void SenderTrust::OnSensorsRegained() {
+  if (state_ == TrustState::kBridged) state_ = TrustState::kValidated;
+}
+
+void SenderTrust::Release() {
+  if (!is_relied_on()) return;
+  state_ = TrustState::kCandidate;
+  history_ = {};
+}
+
+std::optional<SenderTrust::Judgement> SenderTrust::TakeVerdict() {
+  return std::exchange(pending_, std::nullopt);
+}
+
+void SenderTrust::Suspect(Timestamp stamp, const Finding& finding) {
+  last_finding_ = stamp;
+  if (state_ == TrustState::kSuspect || state_ == TrustState::kRevoked) return;
+  // Only a sender we relied on has something to be withdrawn from; a stranger that does not fit is
+  // simply not validated. Its finding still starts it again from zero.
+  if (!is_relied_on()) {
+    state_ = TrustState::kUnknown;
+    consistent_run_ = 0;
+    return;
+  }
+  state_ = TrustState::kSuspect;
+  state_since_ = stamp;
+  consistent_run_ = 0;
+  suspicions_ = std::min(suspicions_ + 1, kMaxDoublings);
+  pending_ = Judgement{Verdict::kWithdraw, finding};
+}
+
+void SenderTrust::Revoke(Timestamp stamp, const Finding& finding) {
+  last_finding_ = stamp;
+  if (state_ == TrustState::kRevoked) return;
+  state_ = TrustState::kRevoked;
+  state_since_ = stamp;
+  consistent_run_ = 0;
+  accusations_ = std::min(accusations_ + 1, kMaxDoublings);
+  pending_ = Judgement{Verdict::kAccuse, finding};
+}
+
+}  // namespace v2vouch

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "daemon/base/time.h"
+#include "daemon/data/outputs.h"
+#include "daemon/trust/checks.h"
+#include "daemon/trust/trust_config.h"
+
+namespace v2vouch {
+
+/// What the sensors and the association say for a sender at this moment.
+struct ValidationEvidence {
+  int co_observations = 0;
+  double span_s = 0.0;
+  bool is_nis_consistent = false;
+  double margin = 0.0;  ///< Log-likelihood over the second best.
+  double min_margin = 4.0;
+  bool is_assigned = false;          ///< Chosen one-to-one.
+  bool are_sensors_sure = false;     ///< Radar and camera, or one of them long enough.
+  bool is_accuracy_poor = false;     ///< Reported worse than 5 m.
+  bool is_ego_gnss_suspect = false;  ///< Our own place is in doubt: nobody is validated.
+};
+
+/// Trust in one sender (notes/spoofing.md 4.3). Pure: evidence in, state and verdicts out.
+///
+///     UNKNOWN -> CANDIDATE -> VALIDATED <-> BRIDGED -> CANDIDATE (bridge ended, no blame)
+///     any -> SUSPECT (withdrawn) -> clean for clean_s, doubling -> CANDIDATE
+///     any -> REVOKED (accused, from hard evidence that lasts) -> revoked_s, doubling -> UNKNOWN
+///
+/// Copyable, fixed size.
+class SenderTrust {
+ public:
+  [[nodiscard]] TrustState state() const { return state_; }
+  [[nodiscard]] bool is_relied_on() const {
+    return state_ == TrustState::kValidated || state_ == TrustState::kBridged;
+  }
+  /// Whether forgetting this sender now would wash something off.
+  [[nodiscard]] bool has_penalty() const {
+    return state_ == TrustState::kSuspect || state_ == TrustState::kRevoked;
+  }
+  [[nodiscard]] const ResidualHistory& history() const { return history_; }
+
+  /// A message, and whether it continues the sender's own motion.
+  void OnMessage(Timestamp stamp, bool is_consistent, const TrustConfig& config);
+
+  /// A claim beside its LOCAL track. @return the gravest finding, already acted upon where it
+  /// changed the state (`verdict` of TakeVerdict).
+  void OnCoObservation(const CoObservation& observation, bool may_accuse,
+                       const TrustConfig& config);
+
+  /// Any other finding (negative evidence, leaving the reachable set, a jump, ...).
+  void OnFinding(Timestamp stamp, const Finding& finding, bool may_accuse);
+
+  /// CANDIDATE -> VALIDATED where all of the evidence is there. @return whether it happened.
+  bool TryValidate(const ValidationEvidence& evidence, const TrustConfig& config);
+
+  void OnSensorsLost();      ///< VALIDATED -> BRIDGED.
+  void OnSensorsRegained();  ///< BRIDGED -> VALIDATED.
+  void Release();            ///< Bridge or contact ended without blame -> CANDIDATE.
+  /// Takes over state, history and penalties of the identity this one continues.
+  void InheritFrom(const SenderTrust& old) { *this = old; }
+
+  /// Residuals have lost their common ground (the ego moved its own place): start them again.
+  void ForgetResiduals() {
+    history_ = {};
+    accusable_since_.reset();
+  }
+
+  /// The verdict that the last call brought, once.
+  struct Judgement {
+    Verdict verdict = Verdict::kWithdraw;
+    Finding finding;
+  };
+  std::optional<Judgement> TakeVerdict();
+
+ private:
+  void Suspect(Timestamp stamp, const Finding& finding);
+  void Revoke(Timestamp stamp, const Finding& finding);
+
+  TrustState state_ = TrustState::kUnknown;
+  int consistent_run_ = 0;
+  int suspicions_ = 0;
+  int accusations_ = 0;
+  Timestamp state_since_{};
+  Timestamp last_finding_{};
+  std::optional<Timestamp> accusable_since_;
+  ResidualHistory history_;
+  std::optional<Judgement> pending_;
+};
+
+}  // namespace v2vouch

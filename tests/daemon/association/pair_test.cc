@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "daemon/association/pair_table.h"
+#include "daemon/base/random.h"
+
+namespace v2vouch {
+namespace {
+
+// A claim with 1 m of white noise beside a track known to 0.2 m.
+PairObservation Observation(double time_s, const Eigen::Vector2d& residual_m,
+                            double speed_residual_mps = 0.0) {
+  PairObservation observation;
+  observation.stamp = FromMicros(0) + FromSeconds(time_s);
+  observation.residual_m = residual_m;
+  observation.sensed = 0.04 * Eigen::Matrix2d::Identity();
+  observation.speed_residual_mps = speed_residual_mps;
+  return observation;
+}
+
+Eigen::Vector2d White(Random& random) { return {random.Normal(), random.Normal()}; }
+
+TEST(PairEvidence, LearnsAnHonestBiasAndStaysConsistent) {
+  const AssociationConfig config;
+  Random random(3);
+  int consistent = 0;
+  for (int run = 0; run < 200; ++run) {
+    const Eigen::Vector2d bias = 1.5 * White(random);
+    PairEvidence evidence(config, std::nullopt, Observation(0.0, bias + White(random)));
+    for (int i = 1; i < 60; ++i) {
+      evidence.Add(Observation(0.1 * i, bias + White(random), 0.2 * random.Normal()), config);
+    }
+    consistent += evidence.is_nis_consistent() ? 1 : 0;
+    EXPECT_GT(evidence.score(), 0.0);
+    EXPECT_LT((evidence.bias() - bias).norm(), 0.9);  // 1 m / sqrt(60) = 0.13 m per axis, 5 sigma.
+  }
+  EXPECT_GE(consistent, 196);  // 99 % band.
+}
+
+TEST(PairEvidence, DifferentSpeedEndsTheLikeness) {
+  const AssociationConfig config;
+  PairEvidence evidence(config, std::nullopt, Observation(0.0, {0.5, 0.0}));
+  for (int i = 1; i < 30; ++i) {
+    evidence.Add(Observation(0.1 * i, {0.5 + 0.3 * i, 0.0}, 3.0), config);
+  }
+  EXPECT_LT(evidence.score(), 0.0);
+}
+
+TEST(PairTable, FarClaimStartsNoPair) {
+  const AssociationConfig config;
+  PairTable table;
+  EXPECT_EQ(table.Observe(1, 10, Observation(0.0, {12.0, 0.0}), std::nullopt, config), nullptr);
+  EXPECT_TRUE(table.pairs().empty());
+}
+
+TEST(PairTable, EachSenderHasOneTrackAndEachTrackOneSender) {
+  const AssociationConfig config;
+  PairTable table;
+  // Two cars 4 m apart, two senders, each 0.5 m off its own car.
+  for (int i = 0; i < 20; ++i) {
+    table.Observe(1, 10, Observation(0.1 * i, {0.5, 0.0}), std::nullopt, config);
+    table.Observe(1, 11, Observation(0.1 * i, {-3.5, 0.0}), std::nullopt, config);
+    table.Observe(2, 10, Observation(0.1 * i, {4.5, 0.0}), std::nullopt, config);
+    table.Observe(2, 11, Observation(0.1 * i, {0.5, 0.0}), std::nullopt, config);
+  }
+  table.Assign(config);
+  ASSERT_NE(table.AssignedTo(1), nullptr);
+  ASSERT_NE(table.AssignedTo(2), nullptr);
+  EXPECT_EQ(table.AssignedTo(1)->track_id, 10u);
+  EXPECT_EQ(table.AssignedTo(2)->track_id, 11u);
+}
+
+TEST(PairTable, SybilsOnOneCarLeaveNobodyAMargin) {
+  const AssociationConfig config;
+  PairTable table;
+  Random random(5);
+  for (int i = 0; i < 30; ++i) {
+    for (const SenderId sender : {1u, 2u, 3u}) {
+      table.Observe(sender, 10, Observation(0.1 * i, {0.3 * sender, 0.0}), std::nullopt, config);
+    }
+  }
+  table.Assign(config);
+  int assigned = 0;
+  for (const auto& pair : table.pairs()) {
+    assigned += pair.is_assigned ? 1 : 0;
+    EXPECT_LT(table.Margin(pair), config.min_margin);
+  }
+  EXPECT_EQ(assigned, 1);
+}
+
+TEST(PairTable, IncumbentKeepsItsTrackAgainstASlightlyBetterRival) {
+  const AssociationConfig config;
+  PairTable table;
+  for (int i = 0; i < 30; ++i) {
+    table.Observe(1, 10, Observation(0.1 * i, {1.0, 0.0}), std::nullopt, config);
+    table.Observe(2, 10, Observation(0.1 * i, {0.0, 0.0}), std::nullopt, config);
+  }
+  table.Assign(config);
+  EXPECT_NE(table.AssignedTo(2), nullptr);
+  table.SetIncumbent(1, 10);
+  table.Assign(config);
+  EXPECT_NE(table.AssignedTo(1), nullptr);
+  EXPECT_EQ(table.AssignedTo(2), nullptr);
+}
+
+TEST(PairTable, NeighbourThatBelongsToAnotherIsNoRival) {
+  const AssociationConfig config;
+  PairTable table;
+  for (int i = 0; i < 3; ++i) {
+    table.Observe(1, 10, Observation(0.1 * i, {0.0, 0.0}), std::nullopt, config);
+    table.Observe(1, 11, Observation(0.1 * i, {1.5, 0.0}), std::nullopt, config);
+    table.Observe(2, 11, Observation(0.1 * i, {0.0, 0.0}), std::nullopt, config);
+  }
+  EXPECT_LT(table.Margin(*table.Find(1, 10)), config.min_margin);
+  table.SetIncumbent(2, 11);
+  EXPECT_EQ(table.Margin(*table.Find(1, 10)), std::numeric_limits<double>::infinity());
+}
+
+TEST(PairTable, StaysWithinItsBoundWhoeverSends) {
+  AssociationConfig config;
+  config.max_pairs = 16;
+  PairTable table;
+  table.Observe(1, 10, Observation(0.0, {0.0, 0.0}), std::nullopt, config);
+  table.SetIncumbent(1, 10);
+  for (SenderId sender = 100; sender < 1100; ++sender) {
+    table.Observe(sender, 10, Observation(0.1, {0.1, 0.0}), std::nullopt, config);
+  }
+  EXPECT_LE(table.pairs().size(), 16u);
+  EXPECT_NE(table.Find(1, 10), nullptr);
+}
+
+}  // namespace
+}  // namespace v2vouch
