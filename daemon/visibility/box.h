@@ -4,12 +4,20 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <optional>
-
-#include "daemon/visibility/visibility.h"
 
 namespace v2vouch {
+
+/// An oriented box in O that may hide what is behind it.
+struct Occluder {
+  std::uint64_t id = 0;  ///< Track it belongs to; a track never hides itself. 0: none.
+  Eigen::Vector2d centre_O = Eigen::Vector2d::Zero();
+  double yaw_rad = 0.0;
+  double length_m = 4.5;
+  double width_m = 1.8;
+  double position_sigma_m = 0.3;
+};
 
 /// p_O in the box's own axes, from its centre.
 inline Eigen::Vector2d InBox(const Occluder& box, const Eigen::Vector2d& p_O) {
@@ -28,68 +36,63 @@ inline bool Holds(const Occluder& box, const Eigen::Vector2d& p_O, double margin
          std::abs(q.y()) <= 0.5 * box.width_m + margin_m;
 }
 
-/// A box as seen from a point outside it. Edges are angles from the line of sight to `towards`,
-/// left positive; ranges from the point.
+/// A box as seen from a point outside it. Edges are angles from a line of sight, left positive;
+/// ranges count from the point. Left uninitialised until Look() fills it: queries keep an array.
 struct Silhouette {
-  Silhouette() = default;
-  Silhouette(const Occluder& seen, const Eigen::Vector2d& from, const Eigen::Vector2d& towards)
-      : box(seen), from_box(InBox(seen, from)) {
-    const Eigen::Vector2d sight = towards - from;
-    bearing_O = std::atan2(sight.y(), sight.x());
-    ray = sight.normalized();
-    centre_m = (seen.centre_O - from).norm();
+  /// @param sight unit vector of the line of sight, in O.
+  void Look(const Occluder& seen, const Eigen::Vector2d& from, const Eigen::Vector2d& sight) {
+    const Eigen::Vector2d d = seen.centre_O - from;
     c = std::cos(seen.yaw_rad);
     s = std::sin(seen.yaw_rad);
-    const Eigen::Vector2d half(0.5 * seen.length_m, 0.5 * seen.width_m);
+    half = {0.5 * seen.length_m, 0.5 * seen.width_m};
+    from_box = {-c * d.x() - s * d.y(), s * d.x() - c * d.y()};
+    sigma_m = seen.position_sigma_m;
+    centre_m = d.norm();
     nearest_m = (from_box.cwiseAbs() - half).cwiseMax(0.0).norm();
     right_rad = std::numeric_limits<double>::infinity();
     left_rad = -right_rad;
-    farthest_m = 0.0;
     for (const double along : {-half.x(), half.x()}) {
       for (const double across : {-half.y(), half.y()}) {
-        const Eigen::Vector2d d =
-            seen.centre_O - from + Eigen::Vector2d(c * along - s * across, s * along + c * across);
-        const double angle = std::atan2(ray.x() * d.y() - ray.y() * d.x(), ray.dot(d));
+        const Eigen::Vector2d corner =
+            d + Eigen::Vector2d(c * along - s * across, s * along + c * across);
+        const double angle =
+            std::atan2(sight.x() * corner.y() - sight.y() * corner.x(), sight.dot(corner));
         right_rad = std::min(right_rad, angle);
         left_rad = std::max(left_rad, angle);
-        farthest_m = std::max(farthest_m, d.norm());
       }
     }
   }
 
-  /// Where a ray (unit vector in O) enters the box; nullopt where it misses.
-  [[nodiscard]] std::optional<double> EntryAlong(const Eigen::Vector2d& ray_O) const {
+  /// Where a ray (unit vector in O) enters the box; `otherwise` where it misses.
+  [[nodiscard]] double EntryAlong(const Eigen::Vector2d& ray_O, double otherwise) const {
     const double dx = c * ray_O.x() + s * ray_O.y();
     const double dy = -s * ray_O.x() + c * ray_O.y();
     double entry = 0.0;
     double exit = std::numeric_limits<double>::infinity();
-    const auto clip = [&](double start, double step, double half) {
+    const auto clip = [&](double start, double step, double half_size) {
       if (std::abs(step) < 1e-12) {
-        if (std::abs(start) > half) exit = -1.0;
+        if (std::abs(start) > half_size) exit = -1.0;
         return;
       }
-      const double a = (-half - start) / step;
-      const double b = (half - start) / step;
+      const double a = (-half_size - start) / step;
+      const double b = (half_size - start) / step;
       entry = std::max(entry, std::min(a, b));
       exit = std::min(exit, std::max(a, b));
     };
-    clip(from_box.x(), dx, 0.5 * box.length_m);
-    clip(from_box.y(), dy, 0.5 * box.width_m);
-    if (entry > exit) return std::nullopt;
-    return entry;
+    clip(from_box.x(), dx, half.x());
+    clip(from_box.y(), dy, half.y());
+    return entry > exit ? otherwise : entry;
   }
 
-  Occluder box;
-  Eigen::Vector2d from_box = Eigen::Vector2d::Zero();  ///< The point in the box's axes.
-  Eigen::Vector2d ray = Eigen::Vector2d::UnitX();      ///< Line of sight, unit vector in O.
-  double bearing_O = 0.0;                              ///< Of the line of sight.
-  double c = 1.0;                                      ///< Of the box's yaw, as s.
-  double s = 0.0;
-  double right_rad = 0.0;
-  double left_rad = 0.0;
-  double nearest_m = 0.0;
-  double centre_m = 0.0;
-  double farthest_m = 0.0;
+  Eigen::Vector2d from_box;  ///< The point in the box's axes.
+  Eigen::Vector2d half;      ///< Half length and width.
+  double c;                  ///< Of the box's yaw, as s.
+  double s;
+  double sigma_m;
+  double right_rad;
+  double left_rad;
+  double nearest_m;
+  double centre_m;
 };
 
 }  // namespace v2vouch

@@ -7,7 +7,6 @@
 
 #include "daemon/base/angle.h"
 #include "daemon/base/check.h"
-#include "daemon/visibility/box.h"
 
 namespace v2vouch {
 namespace {
@@ -21,15 +20,15 @@ constexpr double kBinsAge_s = 0.1;
 constexpr double kBinsPath_m = 0.3;
 
 constexpr int kRays = 16;
-constexpr std::size_t kMostInTheWay = 12;
 constexpr double kDepthBlur_m = 0.3;
 constexpr double kLeastInView = 0.1;
 constexpr double kClearShare = 0.9;
 constexpr double kOccludedShare = 0.8;
 
+// `bearing_O` within three half circles.
 std::size_t BinOf(double bearing_O) {
-  const auto bin = static_cast<int>(std::floor((WrapAngle(bearing_O) + kPi) / kBinSize));
-  return static_cast<std::size_t>(std::clamp(bin, 0, 359));
+  const int bin = static_cast<int>((bearing_O + 3.0 * kPi) / kBinSize);
+  return static_cast<std::size_t>(std::clamp(bin, 0, 3 * 360 - 1) % 360);
 }
 
 double Ramp(double x, double half_width) {
@@ -177,87 +176,120 @@ View VisibilityMap::Overall(const Occluder& footprint) const {
   return best;
 }
 
-SensorView VisibilityMap::See(const Sensor& sensor, const Occluder& footprint) const {
-  const Point<Odometry> origin = ego_.X_OB * Point<Body>{sensor.p_B.x(), sensor.p_B.y()};
-  const Eigen::Vector2d p_OS = origin.vector();
-  const double sigma_m = footprint.position_sigma_m;
-  if (Holds(footprint, p_OS, 0.1)) return {View::kUnknown, 1.0};  // Upon ourselves.
-
-  const Silhouette target(footprint, p_OS, footprint.centre_O);
-  const double azimuth = WrapAngle(target.bearing_O - ego_.X_OB.yaw_rad() - sensor.yaw_rad);
-  if (target.centre_m > sensor.max_range_m || target.centre_m < sensor.min_range_m) return {};
-  const double widened = std::min(3.0 * sigma_m / target.centre_m, 0.5 * kPi);
-  const double right = std::max(target.right_rad - widened, -kPi);
-  const double left = std::min(target.left_rad + widened, kPi);
-  // Out of sight altogether, which most questions are: a sensor of at most a half circle, and
-  // the whole span beyond one of its edges.
-  if (sensor.fov_left_rad + sensor.fov_right_rad < kPi && left - right < kPi) {
-    const double past_left = azimuth + right - sensor.fov_left_rad;
-    const double past_right = -sensor.fov_right_rad - (azimuth + left);
-    if ((past_left > 0.0 && azimuth + left < 2.0 * kPi - sensor.fov_right_rad) ||
-        (past_right > 0.0 && azimuth + right > -2.0 * kPi + sensor.fov_left_rad)) {
-      return {};
-    }
-  }
-
-  // Boxes that may be in the way.
-  std::array<Silhouette, kMostInTheWay> in_the_way;
+// Boxes that may cover a ray of the fan [right, left] (angles from `sight`) nearer than
+// `farthest_m`.
+std::size_t VisibilityMap::CollectInTheWay(const Occluder& footprint, const Eigen::Vector2d& p_OS,
+                                           const Fan& fan, InTheWay& in_the_way) const {
   std::size_t count = 0;
+  const double half_fan = std::max(fan.left_rad, -fan.right_rad);
+  const double cos_fan = std::cos(half_fan);
+  const double sin_fan = std::sin(half_fan);
   for (const Occluder& box : occluders_) {
-    if (count == kMostInTheWay) break;
     if (box.id != 0 && box.id == footprint.id) continue;
     const Eigen::Vector2d d = box.centre_O - p_OS;
     const double radius_m =
         0.5 * (box.length_m + box.width_m) + config_.margin_m + box.position_sigma_m;
-    const double reach_m = target.farthest_m + 3.0 * sigma_m + radius_m;
-    if (d.squaredNorm() > reach_m * reach_m) continue;
-    // Beside the fan of rays: farther from its middle line than half the fan and the radius.
-    const double along_m = d.dot(target.ray);
-    const double aside_m = std::abs(target.ray.x() * d.y() - target.ray.y() * d.x());
-    const double half_fan = std::max(left, -right);
-    if (half_fan < 1.0) {
+    const double along_m = d.dot(fan.sight);
+    if (along_m > fan.farthest_m + radius_m) continue;
+    if (half_fan < 1.0) {  // Else the fan is no wedge worth testing.
       if (along_m < -radius_m) continue;
-      // Distance from a line at angle half_fan, tan bounded since half_fan < 1 rad.
-      const double outside_m = aside_m * std::cos(half_fan) - along_m * std::sin(half_fan);
-      if (outside_m > radius_m) continue;
+      const double aside_m = std::abs(fan.sight.x() * d.y() - fan.sight.y() * d.x());
+      if (aside_m * cos_fan - along_m * sin_fan > radius_m) continue;
     }
     if (Holds(box, footprint.centre_O, 0.0) || Holds(box, p_OS, 0.0)) continue;
-    in_the_way[count++] = Silhouette(box, p_OS, footprint.centre_O);
+    in_the_way[count].Look(box, p_OS, fan.sight);
+    if (++count == in_the_way.size()) break;
+  }
+  return count;
+}
+
+bool VisibilityMap::HasStaticNearer(const Viewpoint& viewpoint, const Fan& fan,
+                                    double limit_cm) const {
+  const std::size_t last = BinOf(fan.bearing_O + fan.left_rad);
+  for (std::size_t bin = BinOf(fan.bearing_O + fan.right_rad);; bin = (bin + 1) % kBins) {
+    if (viewpoint.any_cm[bin] < limit_cm) return true;
+    if (bin == last) return false;
+  }
+}
+
+SensorView VisibilityMap::See(const Sensor& sensor, const Occluder& footprint) const {
+  const Point<Odometry> origin = ego_.X_OB * Point<Body>{sensor.p_B.x(), sensor.p_B.y()};
+  const Eigen::Vector2d p_OS = origin.vector();
+  const Eigen::Vector2d to_centre = footprint.centre_O - p_OS;
+  const double sigma_m = footprint.position_sigma_m;
+  const double centre_m = to_centre.norm();
+  if (centre_m > sensor.max_range_m || centre_m < sensor.min_range_m) return {};
+  if (Holds(footprint, p_OS, 0.1)) return {View::kUnknown, 1.0};  // Upon ourselves.
+
+  Fan fan;
+  fan.sight = to_centre / centre_m;
+  fan.bearing_O = std::atan2(to_centre.y(), to_centre.x());
+  Silhouette target;
+  target.Look(footprint, p_OS, fan.sight);
+  const double widened = std::min(3.0 * sigma_m / centre_m, 0.5 * kPi);
+  fan.right_rad = std::max(target.right_rad - widened, -kPi);
+  fan.left_rad = std::min(target.left_rad + widened, kPi);
+  fan.farthest_m = centre_m + target.half.norm() + 3.0 * sigma_m;
+
+  // Angles of the fan inside the field of view, which may reach it the other way round the circle.
+  const double azimuth = WrapAngle(fan.bearing_O - ego_.X_OB.yaw_rad() - sensor.yaw_rad);
+  const auto sees = [&](double a) {
+    const double x = azimuth + a;
+    return sensor.Sees(x) || sensor.Sees(x - 2.0 * kPi) || sensor.Sees(x + 2.0 * kPi);
+  };
+  const bool is_inside =
+      sensor.Sees(azimuth + fan.right_rad) && sensor.Sees(azimuth + fan.left_rad);
+  const double past_left = azimuth + fan.right_rad - sensor.fov_left_rad;
+  const double past_right = -sensor.fov_right_rad - (azimuth + fan.left_rad);
+  if (std::max(past_left, past_right) > 0.0 && std::abs(azimuth) < kPi - 0.5 && widened < 0.25) {
+    return {};  // Most questions end here: far off the axis, and not by way of the seam.
   }
 
   const Viewpoint& viewpoint = viewpoints_[sensor.viewpoint];
-  const double static_limit_cm =
+  const double limit_cm =
       100.0 * (target.nearest_m - config_.margin_m - config_.static_cell_m - sigma_m);
+  const bool stays_in_range = centre_m + 3.0 * sigma_m <= sensor.max_range_m &&
+                              target.nearest_m - 3.0 * sigma_m >= sensor.min_range_m;
+  InTheWay in_the_way;
+  const std::size_t count = CollectInTheWay(footprint, p_OS, fan, in_the_way);
+  const bool has_static = HasStaticNearer(viewpoint, fan, limit_cm);
+  if (count == 0 && !has_static && is_inside && stays_in_range) return {View::kClear, 1.0};
+
   double weight_sum = 0.0;
   double seen_sum = 0.0;
   double covered_sum = 0.0;
   double uncovered_sum = 0.0;
   double clear_count = 0.0;
-  for (int k = 0; k < kRays; ++k) {
-    const double a = right + (left - right) * (k + 0.5) / kRays;
-    const double inside_m = std::min(a - target.right_rad, target.left_rad - a) * target.centre_m;
+  const double step = (fan.left_rad - fan.right_rad) / kRays;
+  const double first = fan.right_rad + 0.5 * step;
+  Eigen::Matrix2d turn;
+  turn << std::cos(step), -std::sin(step), std::sin(step), std::cos(step);
+  Eigen::Vector2d ray(std::cos(fan.bearing_O + first), std::sin(fan.bearing_O + first));
+  for (int k = 0; k < kRays; ++k, ray = turn * ray) {
+    const double a = first + step * k;
+    const double inside_m = std::min(a - target.right_rad, target.left_rad - a) * centre_m;
     const double weight = Ramp(inside_m, 3.0 * sigma_m);
     weight_sum += weight;
-    if (!sensor.Sees(WrapAngle(azimuth + a))) continue;
+    if (!is_inside && !sees(a)) continue;
 
     double covered = 0.0;
     if (count > 0) {
-      const Eigen::Vector2d ray(std::cos(target.bearing_O + a), std::sin(target.bearing_O + a));
-      const double target_m = target.EntryAlong(ray).value_or(target.centre_m);
+      const double target_m = target.EntryAlong(ray, centre_m);
       for (std::size_t i = 0; i < count; ++i) {
         const Silhouette& box = in_the_way[i];
-        const double entry_m = box.EntryAlong(ray).value_or(box.centre_m);
+        const double entry_m = box.EntryAlong(ray, box.centre_m);
         const double within_m = std::min(a - box.right_rad, box.left_rad - a) * entry_m;
-        const double depth_blur_m = kDepthBlur_m + sigma_m + box.box.position_sigma_m;
-        covered = std::max(covered, Ramp(within_m, config_.margin_m + box.box.position_sigma_m) *
-                                        Ramp(target_m - entry_m, depth_blur_m));
+        covered =
+            std::max(covered, Ramp(within_m, config_.margin_m + box.sigma_m) *
+                                  Ramp(target_m - entry_m, kDepthBlur_m + sigma_m + box.sigma_m));
       }
     }
-    const std::size_t bin = BinOf(target.bearing_O + a);
     double possibly = covered;
-    if (viewpoint.any_cm[bin] < static_limit_cm) possibly = 1.0;
-    if (viewpoint.structure_cm[bin] < static_limit_cm) covered = 1.0;
-
+    if (has_static) {
+      const std::size_t bin = BinOf(fan.bearing_O + a);
+      if (viewpoint.any_cm[bin] < limit_cm) possibly = 1.0;
+      if (viewpoint.structure_cm[bin] < limit_cm) covered = 1.0;
+    }
     seen_sum += weight;
     covered_sum += weight * covered;
     uncovered_sum += weight * (1.0 - 0.5 * (covered + possibly));
@@ -266,8 +298,6 @@ SensorView VisibilityMap::See(const Sensor& sensor, const Occluder& footprint) c
 
   if (!(seen_sum >= kLeastInView * weight_sum) || seen_sum <= 0.0) return {};
   SensorView result = {View::kUnknown, uncovered_sum / weight_sum};
-  const bool stays_in_range = target.centre_m + 3.0 * sigma_m <= sensor.max_range_m &&
-                              target.nearest_m - 3.0 * sigma_m >= sensor.min_range_m;
   if (clear_count >= kClearShare * kRays && stays_in_range) {
     result.view = View::kClear;
   } else if (covered_sum >= kOccludedShare * seen_sum) {

@@ -13,6 +13,7 @@
 #include "daemon/data/measurement.h"
 #include "daemon/data/track.h"
 #include "daemon/data/vehicle.h"
+#include "daemon/visibility/box.h"
 #include "daemon/visibility/static_raster.h"
 
 namespace v2vouch {
@@ -39,16 +40,6 @@ enum class View : std::uint8_t { kClear, kOccluded, kUnknown, kOutOfView };
 struct SensorView {
   View view = View::kOutOfView;
   double uncovered = 0.0;  ///< Share of its azimuth span inside the field of view and not covered.
-};
-
-/// An oriented box in O that may hide what is behind it.
-struct Occluder {
-  std::uint64_t id = 0;  ///< Track it belongs to; a track never hides itself. 0: none.
-  Eigen::Vector2d centre_O = Eigen::Vector2d::Zero();
-  double yaw_rad = 0.0;
-  double length_m = 4.5;
-  double width_m = 1.8;
-  double position_sigma_m = 0.3;
 };
 
 /// Azimuth-range occlusion round each sensor from tracked boxes and accumulated static returns
@@ -123,7 +114,21 @@ class VisibilityMap {
     std::array<std::uint16_t, kBins> any_cm{};
   };
 
+  // The rays of one question: angles from the line of sight to the footprint's centre.
+  struct Fan {
+    Eigen::Vector2d sight = Eigen::Vector2d::UnitX();
+    double bearing_O = 0.0;
+    double right_rad = 0.0;
+    double left_rad = 0.0;
+    double farthest_m = 0.0;
+  };
+  using InTheWay = std::array<Silhouette, 12>;  // More boxes in one line hide no more.
+
   void AddSensor(const Sensor& sensor);
+  [[nodiscard]] std::size_t CollectInTheWay(const Occluder& footprint, const Eigen::Vector2d& p_OS,
+                                            const Fan& fan, InTheWay& in_the_way) const;
+  [[nodiscard]] bool HasStaticNearer(const Viewpoint& viewpoint, const Fan& fan,
+                                     double limit_cm) const;
   void RebuildBins(Viewpoint& viewpoint) const;
   [[nodiscard]] SensorView See(const Sensor& sensor, const Occluder& footprint) const;
 
