@@ -111,8 +111,8 @@ RadarSimulator::RadarSimulator(const World& world, int index, std::uint64_t seed
       const double length = (b - a).norm();
       const Vec2 normal = -LeftOf((b - a) / length);  // Outwards: the outline is counter-clockwise.
       scatterers_.push_back({a, Vec2::Zero(), 12.0, 0.8});
-      for (double s = 1.5; s < length; s += 3.0) {  // Window frames, pipes, door steps.
-        scatterers_.push_back({a + (b - a) * (s / length), normal, 6.0, 0.35});
+      for (double s = 1.25; s < length; s += 2.5) {  // Window frames, pipes, door steps.
+        scatterers_.push_back({a + (b - a) * (s / length), normal, 6.0, 0.4});
       }
       mirrors_.emplace_back(a, b);
     }
@@ -120,7 +120,7 @@ RadarSimulator::RadarSimulator(const World& world, int index, std::uint64_t seed
   for (const Vec2& pole : world.poles()) scatterers_.push_back({pole, Vec2::Zero(), 4.0, 0.75});
   for (const Rail& rail : world.rails()) {
     for (std::size_t i = 0; i < rail.points.size(); ++i) {
-      scatterers_.push_back({rail.points[i], Vec2::Zero(), 2.0, 0.4});
+      scatterers_.push_back({rail.points[i], Vec2::Zero(), 2.0, 0.6});
       if (i > 0) mirrors_.emplace_back(rail.points[i - 1], rail.points[i]);
     }
   }

@@ -237,7 +237,25 @@ struct PoleSpec {
   }
 };
 
-/// Guard rail beside a route: posts every 4 m, a mirror for radar, hides nothing.
+/// A straight row of poles, both ends included.
+struct PoleRowSpec {
+  double from_x_m = 0.0;
+  double from_y_m = 0.0;
+  double to_x_m = 0.0;
+  double to_y_m = 0.0;
+  double every_m = 20.0;
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("from_x_m", from_x_m, {.at_least = -1e5, .at_most = 1e5});
+    a.Field("from_y_m", from_y_m, {.at_least = -1e5, .at_most = 1e5});
+    a.Field("to_x_m", to_x_m, {.at_least = -1e5, .at_most = 1e5});
+    a.Field("to_y_m", to_y_m, {.at_least = -1e5, .at_most = 1e5});
+    a.Field("every_m", every_m, {.at_least = 1.0, .at_most = 1e4});
+  }
+};
+
+/// Guard rail beside a route: posts every 2 m, a mirror for radar, hides nothing.
 struct RailSpec {
   std::string route;
   double offset_m = 0.0;  ///< From the route, left positive.
@@ -419,6 +437,7 @@ struct Scenario {
   std::vector<ParkedSpec> parked;
   std::vector<BuildingSpec> buildings;
   std::vector<PoleSpec> poles;
+  std::vector<PoleRowSpec> pole_rows;
   std::vector<RailSpec> rails;
   VehicleConfig vehicle;  ///< The ego car: body and sensors.
   SensorsSpec sensors;
@@ -444,6 +463,7 @@ struct Scenario {
     a.Field("parked", parked);
     a.Field("buildings", buildings);
     a.Field("poles", poles);
+    a.Field("pole_rows", pole_rows);
     a.Field("rails", rails);
     a.Field("vehicle", vehicle);
     a.Field("sensors", sensors);

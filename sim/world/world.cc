@@ -2,6 +2,7 @@
 #include "sim/world/world.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -10,6 +11,7 @@
 namespace v2vouch::sim {
 namespace {
 
+constexpr double kPostSpacing_m = 2.0;
 constexpr std::uint64_t kSubjectV2vShare = 0x5632565368617265ull;  // Per vehicle id.
 
 std::map<std::string, Path> MakePaths(const Scenario& scenario,
@@ -49,7 +51,7 @@ Wall MakeWall(const BuildingSpec& building) {
 
 Rail MakeRail(const RailSpec& spec, const Path& path) {
   Rail rail;
-  for (double s = spec.from_m; s <= spec.to_m; s += 4.0) {
+  for (double s = spec.from_m; s <= spec.to_m; s += kPostSpacing_m) {
     const PathPoint point = path.At(s);
     rail.points.push_back(point.position + spec.offset_m * LeftOf(Direction(point.yaw_rad)));
   }
@@ -142,6 +144,14 @@ std::unique_ptr<World> World::Make(const Scenario& scenario, std::uint64_t seed,
     world->walls_.push_back(MakeWall(building));
   }
   for (const PoleSpec& pole : scenario.poles) world->poles_.emplace_back(pole.x_m, pole.y_m);
+  for (const PoleRowSpec& row : scenario.pole_rows) {
+    const Vec2 from(row.from_x_m, row.from_y_m);
+    const Vec2 way = Vec2(row.to_x_m, row.to_y_m) - from;
+    const int spaces = std::max(1, static_cast<int>(std::lround(way.norm() / row.every_m)));
+    for (int i = 0; i <= spaces; ++i) {
+      world->poles_.push_back(from + way * (static_cast<double>(i) / spaces));
+    }
+  }
   for (const RailSpec& rail : scenario.rails) {
     world->rails_.push_back(MakeRail(rail, paths.at(rail.route)));
   }
