@@ -20,7 +20,7 @@ struct PaperConfig {
   }
 };
 
-/// Settings of the safe association (`association: safe`; notes/spoofing.md C7).
+/// Settings of the safe association (`association: safe`).
 struct AssociationConfig {
   double bias_sigma_m = 1.5;        ///< Prior of a sender's GNSS bias, per axis.
   double bias_decay_s = 90.0;       ///< Gauss-Markov time constant of that bias.
@@ -31,7 +31,7 @@ struct AssociationConfig {
   double min_margin = 4.0;             ///< Log-likelihood by which the second best must be beaten.
   double incumbent_bonus = 9.2;        ///< Head start of a validated pair in the assignment.
   double max_height_difference_m = 4.0;  ///< Farther apart in known elevation: never a pair.
-  double pair_timeout_s = 2.0;   ///< A pair not observed for this long is forgotten.
+  double pair_timeout_s = 2.0;           ///< A pair not observed for this long is forgotten.
   int max_pairs = 128;
 
   template <class Archive>

@@ -14,7 +14,7 @@
 namespace v2vouch {
 
 /// Candidate pairs of senders and LOCAL tracks, and the global one-to-one choice among them
-/// (notes/spoofing.md C7). Bounded; copyable (a copy leaves work space behind); ordered by sender,
+///. Bounded; copyable (a copy leaves work space behind); ordered by sender,
 /// then track.
 class PairTable {
  public:

@@ -4,6 +4,7 @@
 #include "daemon/alignment/alignment.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/vehicle.h"
+#include "daemon/pipeline/priority_config.h"
 #include "daemon/preprocessing/radar/radar_preprocessing.h"
 #include "daemon/tracking/tracker.h"
 #include "daemon/v2v/intake.h"
@@ -38,6 +39,7 @@ struct PerceptionConfig {
   TrackerConfig tracking;
   AlignmentConfig alignment;
   IntakeConfig v2v;
+  PriorityConfig priority;
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -48,6 +50,7 @@ struct PerceptionConfig {
     a.Field("tracking", tracking);
     a.Field("alignment", alignment);
     a.Field("v2v", v2v);
+    a.Field("priority", priority);
   }
 };
 

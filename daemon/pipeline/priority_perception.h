@@ -1,27 +1,133 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "daemon/alignment/alignment.h"
+#include "daemon/association/pair_table.h"
+#include "daemon/association/paper_list.h"
 #include "daemon/data/bias.h"
 #include "daemon/data/claim.h"
 #include "daemon/data/outputs.h"
 #include "daemon/data/track.h"
+#include "daemon/pipeline/priority_config.h"
+#include "daemon/priority/priority_vehicle.h"
+#include "daemon/trust/sender_trust.h"
 #include "daemon/visibility/visibility.h"
 
 namespace v2vouch {
 
-// Interface that the timeline relies on; the rolled-back V2V part.
-//
-//   class PriorityPerception {            // copyable: a copy is a checkpoint
-//    public:
-//     PriorityPerception(const PriorityConfig& config, const VehicleConfig& vehicle);
-//     void OnFix(const GnssFix& fix, const EgoState& ego, Outputs& outputs);
-//     void OnFrame(const LocalFrame& frame, const VisibilityMap& map, Outputs& outputs);
-//     void OnClaim(const Claim& claim, const EgoState& ego, Outputs& outputs);
-//     void Publish(Timestamp at, TrackList& priority) const;   // tracks predicted to `at`
-//     const Alignment& alignment() const;
-//     TrustState TrustOf(SenderId sender) const;
-//   };
+/// The rolled-back V2V part: alignment, association, trust, and the PRIORITY vehicles.
+///
+/// A vehicle enters PRIORITY when a sender is VALIDATED on a LOCAL track that the sensors alone are
+/// sure of. It stays while
+///   - the sensors see it and its sender has spoken within bridge.max_silence_s (a vehicle whose
+///     radio falls silent is LOCAL's alone again, under LOCAL's rules), or
+///   - it is bridged: hidden, its sender speaks at least every bridge.max_gap_s, budget is left,
+///     the position is certain to bridge.max_sigma_m and inside the reachable set of the
+///     sensor-only coast, and the place is not in clear view and empty.
+/// A bridge that merely ends leaves no blame; a contradiction withdraws the sender (SUSPECT).
+/// V2V alone creates nothing: without a LOCAL track there is no vehicle.
+///
+/// While the ego's GNSS is suspect nobody is validated or accused; claims are still used, through
+/// the frozen alignment.
+///
+/// Copyable: a copy is a checkpoint. Bounded by max_senders and max_pairs. Events must come in
+/// order of time; the same events give the same bits.
+class PriorityPerception {
+ public:
+  PriorityPerception(const PriorityConfig& config, const AlignmentConfig& alignment,
+                     const VehicleConfig& vehicle);
+
+  /// @param ego at alignment().FixTime(fix).
+  void OnFix(const GnssFix& fix, const EgoState& ego, Outputs& outputs);
+  /// After each own-sensor frame. `map` is the visibility of that frame.
+  void OnFrame(const LocalFrame& frame, const VisibilityMap& map, Outputs& outputs);
+  /// Each accepted BSM, in order of reception. `ego` at its reception.
+  void OnClaim(const Claim& claim, const EgoState& ego, Outputs& outputs);
+  /// What the settled bias estimate says of a sender: prior of pairs that start from now on.
+  void SetBiasPrior(SenderId sender, const BiasEstimate& estimate);
+
+  /// Appends the PRIORITY tracks predicted to `at`, ordered by id.
+  void Publish(Timestamp at, const EgoState& ego_at, TrackList& priority) const;
+
+  [[nodiscard]] const Alignment& alignment() const { return alignment_; }
+  [[nodiscard]] TrustState TrustOf(SenderId sender) const;
+  /// Bias of a validated sender; nullopt: nothing learnt. Axes east and north.
+  [[nodiscard]] std::optional<BiasEstimate> BiasOf(SenderId sender) const;
+  /// Raw sensor-confirmed residuals of the last event, at most one.
+  std::vector<BiasResidual> TakeResiduals();
+  [[nodiscard]] std::size_t vehicle_count() const { return vehicles_.size(); }
+  /// Bytes that a copy of this state takes, heap included; what a checkpoint costs.
+  [[nodiscard]] std::size_t checkpoint_bytes() const;
+
+ private:
+  // One sender near a track.
+  struct Link {
+    SenderId sender = 0;
+    CertificateDigest certificate{};
+    SenderTrust trust;
+    ClaimInOdometry last;
+    bool has_last = false;
+    bool is_accuracy_poor = false;
+    std::optional<double> height_m;  // Smoothed; GNSS heights are noisy.
+    std::optional<BiasEstimate> prior_en;
+    std::uint64_t heir_of = 0;  // Vehicle it may continue under this new id; 0 = none.
+    int heir_claims = 0;
+  };
+  // A LOCAL track as of the newest frame.
+  struct Sensed {
+    LocalTrack track;
+    bool is_sure = false;  // The sensors alone are sure enough for PRIORITY.
+    bool is_hit = false;   // Given a measurement in that frame.
+  };
+  struct Settings {
+    PriorityConfig priority;
+    VehicleConfig vehicle;
+  };
+
+  Link* FindLink(SenderId sender);
+  Link* FollowSender(const Claim& claim, const ClaimInOdometry& here);
+  Sensed* FindSensed(std::uint64_t local_id);
+  PriorityVehicle* VehicleOf(SenderId sender);
+  [[nodiscard]] bool IsHeld(std::uint64_t local_id) const;
+  [[nodiscard]] bool MayAccuse() const { return !alignment_.is_suspect(); }
+  [[nodiscard]] std::optional<BiasPrior> PriorOf(const Link& link) const;
+
+  // Frame.
+  void Remember(const LocalFrame& frame, const VisibilityMap& map);
+  void StepVehicle(PriorityVehicle& vehicle, const LocalFrame& frame, const VisibilityMap& map,
+                   Outputs& outputs);
+  void TakeSensorUpdates(PriorityVehicle& vehicle, const Sensed& sensed, const LocalFrame& frame);
+  void LookForReturn(PriorityVehicle& vehicle, Timestamp stamp);
+  std::optional<Finding> Contradiction(const PriorityVehicle& vehicle, Timestamp stamp) const;
+  void LookAtPlace(PriorityVehicle& vehicle, const LocalFrame& frame, const VisibilityMap& map);
+
+  // Claim.
+  void JudgeOwnMotion(Link& link, const ClaimInOdometry& here);
+  void ObservePairs(Link& link, const ClaimInOdometry& here);
+  PriorityVehicle* Inherit(Link& link, const ClaimInOdometry& here, Outputs& outputs);
+  void CompareWithSensors(Link& link, const PriorityVehicle* vehicle, const ClaimInOdometry& here);
+  void UseClaim(Link& link, PriorityVehicle& vehicle, const ClaimInOdometry& here);
+  void TryValidate(Link& link, const ClaimInOdometry& here);
+
+  void EndVehicle(PriorityVehicle& vehicle);
+  void Report(Link& link, Timestamp stamp, Outputs& outputs);
+  void DropEnded();
+
+  std::shared_ptr<const Settings> settings_;
+  Alignment alignment_;
+  std::optional<double> ego_height_m_;
+  std::vector<Link> links_;     // By sender.
+  std::vector<Sensed> sensed_;  // By LOCAL id; all tracks of the newest frame.
+  Timestamp sensed_stamp_{};
+  PairTable pairs_;
+  std::vector<PriorityVehicle> vehicles_;  // By id; id 0 = ended in this step.
+  PaperList paper_;
+  std::vector<BiasResidual> residuals_;
+};
 
 }  // namespace v2vouch

@@ -10,8 +10,7 @@
 
 namespace v2vouch {
 
-/// How long and how far V2V may carry a vehicle that no sensor sees (DESIGN 5.9,
-/// notes/spoofing.md 4.3).
+/// How long and how far V2V may carry a vehicle that no sensor sees.
 struct BridgeConfig {
   double base_s = 2.0;             ///< Budget = base_s + co-observed time, ...
   double least_s = 4.5;            ///< ... at least this once validated, ...

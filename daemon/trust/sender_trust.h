@@ -23,7 +23,7 @@ struct ValidationEvidence {
   bool is_ego_gnss_suspect = false;  ///< Our own place is in doubt: nobody is validated.
 };
 
-/// Trust in one sender (notes/spoofing.md 4.3). Pure: evidence in, state and verdicts out.
+/// Trust in one sender. Pure: evidence in, state and verdicts out.
 ///
 ///     UNKNOWN -> CANDIDATE -> VALIDATED <-> BRIDGED -> CANDIDATE (bridge ended, no blame)
 ///     any -> SUSPECT (withdrawn) -> clean for clean_s, doubling -> CANDIDATE

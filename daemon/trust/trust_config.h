@@ -6,7 +6,7 @@
 
 namespace v2vouch {
 
-/// Thresholds of the trust checks and of the state machine (notes/spoofing.md 4). "Withdraw" stops
+/// Thresholds of the trust checks and of the state machine. "Withdraw" stops
 /// believing, "accuse" reports a liar.
 struct TrustConfig {
   int candidate_messages = 3;     ///< Consistent messages that make a CANDIDATE.

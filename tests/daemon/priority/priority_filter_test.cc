@@ -57,9 +57,9 @@ struct Result {
   Figures local_seen;  // The same filter without any claim.
 };
 
-// DESIGN 8: a validated vehicle is seen for 6 s and then hidden for 4 s; BSM white noise 1.0 m,
+// A validated vehicle is seen for 6 s and then hidden for 4 s; BSM white noise 1.0 m,
 // bias 1.5 m per axis, ego heading off by 0.3 deg (1 sigma); claimed speed and direction are off by
-// 0.1 m/s and 0.7 deg for good, as in the comparison of notes/tracking.md 4. An oncoming car that
+// 0.1 m/s and 0.7 deg for good, unknown to the filter. An oncoming car that
 // brakes, goes on and sways; none of that is the filter's own model.
 Result SeenThenHidden(int runs, bool with_claims_hidden) {
   const PriorityFilterConfig config;

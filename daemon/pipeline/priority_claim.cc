@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a claim does: evidence for pairs, trust, validation, and the fused filters.
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/base/angle.h"
+#include "daemon/models/ctra.h"
+#include "daemon/pipeline/priority_evidence.h"
+#include "daemon/pipeline/priority_perception.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr double kMaxFrameAge_s = 0.5;  // Older tracks are not compared with anything.
+constexpr double kUnknownAccel_mps2 = 4.0;
+constexpr double kOwnMotionFloor_m = 2.0;
+constexpr double kHeirSpeed_mps = 2.0;
+constexpr double kHeirYaw_rad = FromDegrees(20.0);
+
+}  // namespace
+
+// Whether the message continues the last one: the place where the last would have the sender now.
+void PriorityPerception::JudgeOwnMotion(Link& link, const ClaimInOdometry& here) {
+  const TrustConfig& config = settings_->priority.trust;
+  if (!link.has_last) return link.trust.OnMessage(here.stamp, true, config);
+  const ClaimInOdometry& last = link.last;
+  const double dt_s = std::max(0.0, ToSeconds(here.stamp - last.stamp));
+  const double speed_mps = 0.5 * (last.speed_mps + here.speed_mps);
+  const double yaw_rad = last.yaw_rad + 0.5 * AngleDifference(here.yaw_rad, last.yaw_rad);
+  const Eigen::Vector2d expected =
+      last.p_O + speed_mps * dt_s * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
+  const double distance_m = (here.p_O - expected).norm();
+  const double sigma_m = std::sqrt(0.5 * (last.noise.trace() + here.noise.trace()));
+  const double tolerance_m =
+      kOwnMotionFloor_m + 3.0 * sigma_m + 0.5 * kUnknownAccel_mps2 * dt_s * dt_s;
+  link.trust.OnMessage(here.stamp, distance_m <= tolerance_m, config);
+  if (const auto finding = CheckJump(distance_m, dt_s, config)) {
+    link.trust.OnFinding(here.stamp, *finding, MayAccuse());
+  }
+}
+
+void PriorityPerception::ObservePairs(Link& link, const ClaimInOdometry& here) {
+  const PriorityConfig& config = settings_->priority;
+  const double dt_s = ToSeconds(here.stamp - sensed_stamp_);
+  if (sensed_.empty() || dt_s > kMaxFrameAge_s) return;
+  if (link.height_m && ego_height_m_ &&
+      std::abs(*link.height_m - *ego_height_m_) > config.safe.max_height_difference_m) {
+    return;  // On another level: a bridge over us or a road below.
+  }
+  const auto prior = PriorOf(link);
+  bool has_changed = false;
+  for (const Sensed& sensed : sensed_) {
+    const double limit_m = config.interest_m;
+    if ((sensed.track.state_O.mean.head<2>() - here.p_O).squaredNorm() > limit_m * limit_m) {
+      continue;
+    }
+    KinematicState state = sensed.track.state_O;
+    if (dt_s > 0.0) PredictCtra(state, dt_s, config.filter.motion);
+    has_changed |= pairs_.Observe(link.sender, sensed.track.id, Compare(here, state), prior,
+                                  config.safe) != nullptr;
+  }
+  if (has_changed) pairs_.Assign(config.safe);
+}
+
+// An honest change of pseudonym: a new id goes on where an old one has just fallen silent.
+PriorityVehicle* PriorityPerception::Inherit(Link& link, const ClaimInOdometry& here,
+                                             Outputs& outputs) {
+  const PriorityConfig& config = settings_->priority;
+  const IdentityChangeConfig& change = config.identity_change;
+  // The old id speaks again: then it was no change, and the newcomer is thrown out.
+  for (PriorityVehicle& vehicle : vehicles_) {
+    if (vehicle.id == 0 || vehicle.predecessor != link.sender) continue;
+    if (ToSeconds(here.stamp - vehicle.handover) > change.contest_s) continue;
+    Link* rival = FindLink(vehicle.sender);
+    vehicle.predecessor.reset();
+    if (rival == nullptr) continue;
+    link.trust.InheritFrom(rival->trust);
+    vehicle.sender = link.sender;
+    pairs_.SetIncumbent(rival->sender, std::nullopt);
+    pairs_.SetIncumbent(link.sender, vehicle.local_id);
+    rival->trust.OnFinding(here.stamp,
+                           {"contested_identity", Verdict::kWithdraw, "silence_s",
+                            ToSeconds(here.stamp - vehicle.handover), change.contest_s},
+                           MayAccuse());
+    Report(*rival, here.stamp, outputs);
+    return &vehicle;
+  }
+  if (link.trust.has_penalty()) return nullptr;
+
+  PriorityVehicle* heritage = nullptr;
+  for (PriorityVehicle& vehicle : vehicles_) {
+    const double silence_s = ToSeconds(here.stamp - vehicle.last_v2v);
+    if (vehicle.id == 0 || silence_s < change.least_silence_s ||
+        silence_s > change.most_silence_s) {
+      continue;
+    }
+    PriorityFilter ahead = vehicle.filter;
+    ahead.PredictTo(here.stamp, config.filter);
+    const KinematicState state = ahead.kinematics();
+    const Eigen::Vector2d nu = here.p_O - state.mean.head<2>() - ahead.bias();
+    const Eigen::Matrix2d S = state.covariance.topLeftCorner<2, 2>() + ahead.bias_covariance() +
+                              here.noise + here.alignment;
+    if (nu.dot(S.inverse() * nu) > change.gate) continue;
+    if (std::abs(here.speed_mps - state.mean[kSpeed]) > kHeirSpeed_mps) continue;
+    if (here.has_course && std::abs(state.mean[kSpeed]) > kHeirSpeed_mps &&
+        std::abs(AngleDifference(here.yaw_rad, state.mean[kYaw])) > kHeirYaw_rad) {
+      continue;
+    }
+    if (heritage != nullptr) return nullptr;  // Two could be meant: neither is taken.
+    heritage = &vehicle;
+  }
+  if (heritage == nullptr) {
+    link.heir_of = 0;
+    link.heir_claims = 0;
+    return nullptr;
+  }
+  link.heir_claims = link.heir_of == heritage->id ? link.heir_claims + 1 : 1;
+  link.heir_of = heritage->id;
+  if (link.heir_claims < change.messages) return nullptr;
+  const SenderId heir = link.sender;
+  const SenderId old = heritage->sender;
+  if (const Link* old_link = FindLink(old)) link.trust.InheritFrom(old_link->trust);
+  link.heir_of = 0;
+  heritage->predecessor = old;
+  heritage->handover = here.stamp;
+  heritage->sender = heir;
+  pairs_.DropSender(old);
+  pairs_.SetIncumbent(heir, heritage->local_id);
+  std::erase_if(links_, [&](const Link& other) { return other.sender == old; });
+  return heritage;
+}
+
+// Raw residuals against the LOCAL track the sender is taken for. Hidden vehicles have none.
+void PriorityPerception::CompareWithSensors(Link& link, const PriorityVehicle* vehicle,
+                                            const ClaimInOdometry& here) {
+  const PriorityConfig& config = settings_->priority;
+  std::uint64_t local_id = 0;
+  if (vehicle != nullptr) {
+    local_id = vehicle->is_supported ? vehicle->local_id : 0;
+  } else if (const PairTable::Pair* pair = pairs_.AssignedTo(link.sender)) {
+    local_id = pair->track_id;
+  }
+  const Sensed* sensed = FindSensed(local_id);
+  const double dt_s = ToSeconds(here.stamp - sensed_stamp_);
+  if (sensed == nullptr || dt_s > kMaxFrameAge_s) return;
+  KinematicState state = sensed->track.state_O;
+  if (dt_s > 0.0) PredictCtra(state, dt_s, config.filter.motion);
+  const CoObservation observation = ForTrust(here, state);
+  link.trust.OnCoObservation(observation, MayAccuse(), config.trust);
+  if (vehicle == nullptr || !link.trust.is_relied_on() || alignment_.is_suspect()) return;
+  const Eigen::Matrix2d R_LO = alignment_.X_LO().rotation();
+  const Eigen::Matrix2d P = state.covariance.topLeftCorner<2, 2>() + here.noise + here.alignment;
+  residuals_.push_back(
+      {link.sender, here.stamp, R_LO * observation.residual_O, R_LO * P * R_LO.transpose()});
+  alignment_.Vouch(here.stamp);
+}
+
+void PriorityPerception::UseClaim(Link& link, PriorityVehicle& vehicle,
+                                  const ClaimInOdometry& here) {
+  const PriorityConfig& config = settings_->priority;
+  if (!link.trust.is_relied_on()) return;
+  const double since_last_s = ToSeconds(here.stamp - vehicle.last_v2v);
+  vehicle.PredictTo(here.stamp, config.filter);
+  const ClaimFit fit = vehicle.filter.Update(here, config.filter);
+  vehicle.last_v2v = here.stamp;
+  if (vehicle.is_supported) {
+    vehicle.misfits_in_a_row = 0;  // Sensors judge it by its raw residual.
+    if (fit.is_used)
+      vehicle.co_observed_s += std::clamp(since_last_s, 0.0, config.bridge.max_gap_s);
+    return;
+  }
+  vehicle.misfits_in_a_row = fit.is_used && fit.is_velocity_used ? 0 : vehicle.misfits_in_a_row + 1;
+  if (vehicle.misfits_in_a_row >= config.bridge.max_misfits) {
+    return link.trust.OnFinding(here.stamp,
+                                {"bridge_misfit", Verdict::kWithdraw, "position_nis",
+                                 fit.position_nis, config.filter.position_gate},
+                                MayAccuse());
+  }
+  const double elapsed_s = ToSeconds(here.stamp - vehicle.last_support);
+  const Eigen::Vector2d p_O = vehicle.filter.mean().head<2>();
+  if (!IsReachable(vehicle.coast, elapsed_s, p_O, config.bridge)) {
+    link.trust.OnFinding(here.stamp,
+                         {"out_of_reach", Verdict::kWithdraw, "distance_m",
+                          (p_O - vehicle.coast.mean.head<2>()).norm(), 0.0},
+                         MayAccuse());
+  }
+}
+
+void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
+  const PriorityConfig& config = settings_->priority;
+  const PairTable::Pair* pair = pairs_.AssignedTo(link.sender);
+  if (pair == nullptr || IsHeld(pair->track_id)) return;
+  const Sensed* sensed = FindSensed(pair->track_id);
+  if (sensed == nullptr) return;
+  const Timestamp last_hit = std::max(sensed->track.last_radar.value_or(Timestamp{}),
+                                      sensed->track.last_camera.value_or(Timestamp{}));
+  const bool is_seen = ToSeconds(here.stamp - last_hit) <= config.bridge.support_s;
+  const PairEvidence& evidence = pair->evidence;
+  if (!link.trust.TryValidate({.co_observations = evidence.observations(),
+                               .span_s = evidence.span_s(),
+                               .is_nis_consistent = evidence.is_nis_consistent(),
+                               .margin = pairs_.Margin(*pair),
+                               .min_margin = config.safe.min_margin,
+                               .is_assigned = pair->is_assigned,
+                               .are_sensors_sure = sensed->is_sure && is_seen,
+                               .is_accuracy_poor = link.is_accuracy_poor,
+                               .is_ego_gnss_suspect = alignment_.is_suspect()},
+                              config.trust)) {
+    return;
+  }
+  std::uint64_t id = PriorityId(sensed->track.id, 0);
+  for (int attempt = 1; std::ranges::find(vehicles_, id, &PriorityVehicle::id) != vehicles_.end();
+       ++attempt) {
+    id = PriorityId(sensed->track.id, attempt);
+  }
+  const LocalTrack& track = sensed->track;
+  PriorityVehicle vehicle{
+      .id = id,
+      .local_id = track.id,
+      .sender = link.sender,
+      .start = here.stamp,
+      .filter =
+          PriorityFilter(track.state_O, sensed_stamp_, evidence.bias(), evidence.bias_covariance(),
+                         std::sqrt(alignment_.covariance()(2, 2)), config.filter),
+      .coast = track.state_O,
+      .coast_stamp = sensed_stamp_,
+      .last_support = last_hit,
+      .co_observed_s = evidence.span_s(),
+      .last_v2v = here.stamp,
+      .extent = track.extent,
+      .object_class = track.object_class,
+      .existence = track.existence,
+      .last_radar = track.last_radar,
+      .last_camera = track.last_camera,
+      .radar_hits = track.radar_hits,
+      .camera_hits = track.camera_hits};
+  vehicle.PredictTo(here.stamp, config.filter);
+  pairs_.SetIncumbent(link.sender, track.id);
+  vehicles_.insert(std::ranges::lower_bound(vehicles_, id, {}, &PriorityVehicle::id), vehicle);
+}
+
+}  // namespace v2vouch

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "daemon/association/pair_evidence.h"
+#include "daemon/data/claim.h"
+#include "daemon/data/track.h"
+#include "daemon/data/vehicle.h"
+#include "daemon/pipeline/priority_config.h"
+#include "daemon/trust/checks.h"
+#include "daemon/visibility/visibility.h"
+
+namespace v2vouch {
+
+/// A claim beside a LOCAL track that has been predicted to the claim's time. Both may tell the same
+/// motion with opposite fronts (reversing, a standing car of unknown direction): the reading in
+/// which they agree better counts.
+PairObservation Compare(const ClaimInOdometry& claim, const KinematicState& sensed);
+
+/// The same for the trust checks: raw residuals, the sensors' own uncertainty beside them.
+CoObservation ForTrust(const ClaimInOdometry& claim, const KinematicState& sensed);
+
+/// Whether the sensors alone are sure enough of a track for PRIORITY: radar and camera where both
+/// cover the place, else the one that does, for long enough.
+bool AreSensorsSure(const LocalTrack& track, const LocalFrame& frame, const VisibilityMap& map,
+                    const VehicleConfig& vehicle, const SensorSupportConfig& config);
+
+/// How likely the sensors are to detect a vehicle on this footprint, where the place is in clear
+/// view of a sensor and the sector is watched; nullopt: not seeing it says nothing. A sector that
+/// is degraded (a sensor of it is silent) counts for no more than the floor.
+std::optional<double> ClearDetection(const Occluder& footprint, const LocalFrame& frame,
+                                     const VisibilityMap& map, const VehicleConfig& vehicle,
+                                     double least_detection);
+
+}  // namespace v2vouch
