@@ -28,6 +28,7 @@ struct Costs {
 struct Cluster {
   std::vector<std::size_t> truths, tracks;
   std::vector<char> allowed;  // truths x tracks: ever closer than c
+  std::vector<int> present;   // Tracks that exist, per step.
 };
 
 class Problem {
@@ -92,6 +93,10 @@ class Problem {
       for (const std::size_t i : cluster.truths) {
         for (const std::size_t j : cluster.tracks) cluster.allowed.push_back(close[i * m + j]);
       }
+      cluster.present.assign(steps_, 0);
+      for (const std::size_t j : cluster.tracks) {
+        for (std::size_t t = 0; t < steps_; ++t) cluster.present[t] += TrackExists(j, t) ? 1 : 0;
+      }
       clusters.push_back(std::move(cluster));
     }
     return clusters;
@@ -102,8 +107,7 @@ class Problem {
                  TrajectoryGospaResult* sum) const {
     double localisation = 0.0;
     int missed = 0;
-    int false_tracks = 0;
-    for (const std::size_t j : cluster.tracks) false_tracks += TrackExists(j, t) ? 1 : 0;
+    int false_tracks = cluster.present[t];
     for (std::size_t a = 0; a < cluster.truths.size(); ++a) {
       const bool exists = TruthExists(cluster.truths[a], t);
       missed += exists ? 1 : 0;
@@ -262,20 +266,34 @@ class Beam {
       if (before == nullptr || (*before)[a] == to) return 0.0;
       return (*before)[a] >= 0 && to >= 0 ? costs.full : costs.full / 2.0;
     };
-    cost_.assign(n * m, kForbidden);
+    // Tracks that are neither here now nor held before gain nothing: leave them out.
+    columns_.clear();
+    for (std::size_t b = 0; b < m; ++b) {
+      const bool is_held = before != nullptr && std::find(before->begin(), before->end(),
+                                                          static_cast<int>(b)) != before->end();
+      if (is_held || problem_.TrackExists(cluster_.tracks[b], t)) columns_.push_back(b);
+    }
+    cost_.assign(n * columns_.size(), kForbidden);
     lone_.assign(n, 0.0);
     for (std::size_t a = 0; a < n; ++a) {
       lone_[a] = switch_cost(a, -1);
-      for (std::size_t b = 0; b < m; ++b) {
+      for (std::size_t k = 0; k < columns_.size(); ++k) {
+        const std::size_t b = columns_[k];
         if (!cluster_.allowed[a * m + b]) continue;
         // Relative to both staying alone, which is a constant of the step.
         const double d = problem_.PairPower(cluster_.truths[a], cluster_.tracks[b], t);
         const double gain = d < costs.pair_max ? d - costs.pair_max : 0.0;
-        cost_[a * m + b] = gain + switch_cost(a, static_cast<int>(b));
+        cost_[a * columns_.size() + k] = gain + switch_cost(a, static_cast<int>(b));
       }
     }
-    const auto solution = solver_.Solve(cost_, n, m, lone_);
-    return {solution.begin(), solution.end()};
+    const auto solution = solver_.Solve(cost_, n, columns_.size(), lone_);
+    Matching matching(n, -1);
+    for (std::size_t a = 0; a < n; ++a) {
+      if (solution[a] >= 0) {
+        matching[a] = static_cast<int>(columns_[static_cast<std::size_t>(solution[a])]);
+      }
+    }
+    return matching;
   }
 
   const Problem& problem_;
@@ -283,6 +301,7 @@ class Beam {
   std::size_t width_;
   AssignmentSolver solver_;
   std::vector<double> cost_, lone_;
+  std::vector<std::size_t> columns_;
 };
 
 /// Improves a path truth by truth: with the others' matchings fixed, one truth's best sequence over

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+
+#include "sim/evaluation/evaluation.h"
+#include "sim/evaluation/report.h"
+
+namespace {
+
+constexpr int kGood = 0;
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  v2vouch-eval OUT.lcm                        table of all figures and gates\n"
+    "  v2vouch-eval OUT.lcm --json --cutoff 30     the same for programs\n"
+    "  v2vouch-eval OUT.lcm --report report/       report/index.html, one file\n"
+    "  v2vouch-eval OUT.lcm --paper OUT_PAPER.lcm --report report/\n"
+    "  v2vouch-eval drive.lcm --summary            a real drive: counts, no truth needed\n"
+    "\n"
+    "Exit codes: 0 good; 1 the log cannot be read or judged (no TRUTH), or with --gates a gate is\n"
+    "missed; 2 usage.";
+
+/// Shows the share done on a terminal; says nothing elsewhere.
+std::function<void(double)> Progress(const char* what) {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [what](double share) {
+    std::fprintf(stderr, "\r%s %3.0f %%%s", what, 100.0 * share, share >= 1.0 ? "\n" : "");
+  };
+}
+
+bool Load(const std::string& path, v2vouch::evaluation::RunLog& log) {
+  std::string error;
+  if (v2vouch::evaluation::ReadRunLog(path, Progress("reading"), log, error)) return true;
+  std::fprintf(stderr, "v2vouch-eval: %s: %s\n", path.c_str(), error.c_str());
+  return false;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace v2vouch::evaluation;
+  CLI::App app(
+      "Judges a recorded run against its truth: GOSPA with all parts, bound, gates, report.");
+  app.footer(kExamples);
+  app.set_version_flag("--version", V2VOUCH_VERSION);
+  std::string log_path, paper_path, report_folder, lcm_url;
+  ScoringSettings settings;
+  bool as_json = false, summary = false, use_gates = false;
+  app.add_option("LOG", log_path, "Recorded run: outputs of the daemon or v2vouch-replay")
+      ->required();
+  app.add_option("--paper", paper_path, "The same run with `association: paper`, shown beside");
+  app.add_option("--report", report_folder, "Folder for index.html (made if absent)");
+  app.add_option("--cutoff", settings.cutoff_m, "GOSPA cutoff c [m]")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  app.add_option("--switching-penalty", settings.switching_m,
+                 "Switching penalty [m]; default half the cutoff")
+      ->check(CLI::Range(0.0, 1000.0));
+  app.add_flag("--json", as_json, "Figures as JSON on standard output");
+  app.add_flag("--summary", summary, "Counts and lengths of the lists only; needs no truth");
+  app.add_flag("--gates", use_gates, "Exit code 1 when a gate is missed");
+  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? kGood : kUsage;
+  }
+
+  RunLog log;
+  if (!Load(log_path, log)) return kFailed;
+  if (summary) {
+    std::fputs((as_json ? ListSummaryJson(log) : ListSummary(log)).c_str(), stdout);
+    return kGood;
+  }
+  if (log.truth.empty()) {
+    std::fprintf(stderr,
+                 "v2vouch-eval: %s holds no TRUTH, so nothing can be judged. `--summary` counts "
+                 "its lists.\n",
+                 log_path.c_str());
+    return kFailed;
+  }
+  const auto evaluation = Evaluate(std::move(log), settings);
+  std::unique_ptr<Evaluation> paper;
+  if (!paper_path.empty()) {
+    RunLog paper_log;
+    if (!Load(paper_path, paper_log)) return kFailed;
+    if (paper_log.truth.empty()) {
+      std::fprintf(stderr, "v2vouch-eval: %s holds no TRUTH.\n", paper_path.c_str());
+      return kFailed;
+    }
+    paper = Evaluate(std::move(paper_log), settings);
+  }
+  if (!report_folder.empty()) {
+    std::string error;
+    const std::string file = WriteReport(report_folder, *evaluation, paper.get(), error);
+    if (file.empty()) {
+      std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());
+      return kFailed;
+    }
+    std::fprintf(stderr, "report: %s\n", file.c_str());
+  }
+  const std::string figures =
+      as_json ? ToJson(*evaluation, paper.get()) : ToTable(*evaluation, paper.get());
+  std::fputs(figures.c_str(), stdout);
+  if (use_gates) {
+    for (const Gate& gate : evaluation->gates) {
+      if (!gate.passes()) return kFailed;
+    }
+  }
+  return kGood;
+}

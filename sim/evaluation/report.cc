@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/evaluation/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "sim/evaluation/birds_eye.h"
+#include "sim/evaluation/moments.h"
+#include "sim/evaluation/report_tables.h"
+#include "sim/evaluation/svg.h"
+#include "sim/evaluation/timeline.h"
+
+namespace v2vouch::evaluation {
+namespace {
+
+constexpr const char* kStyle = R"(
+:root { color-scheme: light; }
+* { box-sizing: border-box; }
+body { margin: 0; background: #eef0f3; color: #2d333b;
+  font: 15px/1.5 "Segoe UI", "Helvetica Neue", Arial, "Liberation Sans", sans-serif; }
+main { width: 1140px; margin: 0 auto; padding: 28px 0 60px; }
+h1 { font-size: 26px; margin: 0 0 2px; letter-spacing: -0.3px; }
+h2 { font-size: 18px; margin: 0 0 4px; }
+p { margin: 4px 0 10px; max-width: 100ch; }
+.sub { color: #6b7480; margin-bottom: 18px; }
+.card { background: #fff; border: 1px solid #dde1e6; border-radius: 8px; padding: 20px 24px;
+  margin: 18px 0; overflow-x: auto; }
+.note { color: #6b7480; font-size: 13.5px; }
+.gates { display: grid; grid-template-columns: repeat(3, 1fr); gap: 10px; margin-top: 12px; }
+.gate { border: 1px solid #dde1e6; border-left: 5px solid #17855a; border-radius: 6px;
+  padding: 8px 12px; }
+.gate.miss { border-left-color: #c0392b; }
+.gate b { font-size: 20px; font-variant-numeric: tabular-nums; }
+.gate .what { font-size: 13px; color: #6b7480; }
+.gate .limit { font-size: 13px; color: #6b7480; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; width: 100%;
+  margin: 10px 0 4px; }
+th, td { padding: 5px 10px; text-align: right; border-bottom: 1px solid #eceef1; }
+th { font-weight: 600; font-size: 13px; color: #6b7480; border-bottom: 1px solid #c9ced6; }
+th:first-child, td:first-child { text-align: left; }
+tr.list td { font-weight: 600; background: #f5f6f8; }
+tr.ours td { font-weight: 600; }
+tr.bound td { color: #6b7480; font-style: italic; }
+.local { color: #2b6cb0; } .v2v { color: #b5651d; } .priority { color: #17855a; }
+.pictures { display: flex; gap: 10px; flex-wrap: wrap; justify-content: space-between; }
+svg { display: block; }
+svg text { font-family: "Segoe UI", "Helvetica Neue", Arial, "Liberation Sans", sans-serif; }
+.tick { font-size: 12px; fill: #5c6570; }
+.label { font-size: 12.5px; fill: #5c6570; }
+.legend { font-size: 13px; fill: #2d333b; }
+.caption { font-size: 14px; font-weight: 600; fill: #2d333b; }
+.ring { font-size: 10px; fill: #98a1ac; }
+.id { font-size: 11px; fill: #2d333b; paint-order: stroke; stroke: #f7f8fa; stroke-width: 3px; }
+.critical { font-weight: 700; font-size: 12.5px; fill: #c0392b; }
+)";
+
+const char* ColourOf(ListKind kind) {
+  constexpr std::array kColours = {colour::kLocal, colour::kV2v, colour::kPriority};
+  return kColours[Index(kind)];
+}
+
+std::vector<PlotBand> BandsOf(const Evaluation& evaluation, std::optional<std::size_t> critical) {
+  std::vector<PlotBand> bands;
+  if (!critical) return bands;
+  for (const Interval& hidden : HiddenIntervals(evaluation, *critical, true)) {
+    bands.push_back({hidden.from_s, hidden.to_s});
+  }
+  return bands;
+}
+
+Plot PlotOver(const Evaluation& evaluation, std::optional<std::size_t> critical, std::string id,
+              std::string y_label) {
+  Plot plot;
+  plot.id = std::move(id);
+  plot.y_label = std::move(y_label);
+  plot.x_to = std::max(evaluation.settings.period_s, evaluation.duration_s);
+  plot.bands = BandsOf(evaluation, critical);
+  if (critical) {
+    plot.band_label =
+        "vehicle " + std::to_string(evaluation.log.truth.objects[*critical].id) + " hidden";
+  }
+  return plot;
+}
+
+/// The paper's figures 4 and 5: one value per list over time.
+template <class Value>
+std::string OverTime(const Evaluation& evaluation, const std::vector<ListScore>& scores,
+                     std::optional<std::size_t> critical, const std::string& id,
+                     const std::string& y_label, double y_least_top, bool with_bound,
+                     const Value& value) {
+  Plot plot = PlotOver(evaluation, critical, id, y_label);
+  plot.y_least_top = y_least_top;
+  for (const ListScore& score : scores) {
+    PlotSeries line{ListTitle(score.kind), ColourOf(score.kind), {}, false, 1.8};
+    PlotSeries bound{
+        std::string("bound ") + ListTitle(score.kind), ColourOf(score.kind), {}, true, 1.2};
+    for (const InstantScore& now : score.series) {
+      line.points.emplace_back(now.t_s, value(now));
+      bound.points.emplace_back(now.t_s, now.bound_gospa);
+    }
+    plot.series.push_back(std::move(line));
+    if (with_bound && score.kind != ListKind::kV2v) plot.series.push_back(std::move(bound));
+  }
+  return Draw(plot);
+}
+
+/// Position error of the critical vehicle in each list, with the bound of the fused one.
+std::string CriticalError(const Evaluation& evaluation, std::size_t critical) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  Plot plot = PlotOver(evaluation, critical, "critical", "position error [m]");
+  for (const ListScore& score : evaluation.cutoffs.front().own) {
+    PlotSeries line{ListTitle(score.kind), ColourOf(score.kind), {}, false, 1.6};
+    for (const InstantScore& now : score.series) line.points.emplace_back(now.t_s, kNone);
+    for (const MatchedPair& pair : score.pairs) {
+      if (pair.object != critical || score.series.empty()) continue;
+      line.points[pair.instant - score.series.front().instant].y() = pair.error_m;
+    }
+    plot.series.push_back(std::move(line));
+  }
+  PlotSeries bound{"bound PRIORITY (RMS)", colour::kInk, {}, true, 1.4};
+  for (const InstantScore& now : evaluation.headline(ListKind::kPriority).series) {
+    const BoundCell& cell = evaluation.bound->At(ListKind::kPriority, critical, now.instant);
+    bound.points.emplace_back(now.t_s, cell.is_held ? std::sqrt(cell.variance_m2) : kNone);
+  }
+  plot.series.push_back(std::move(bound));
+  return Draw(plot);
+}
+
+std::string Card(const std::string& title, const std::string& text, const std::string& body) {
+  return "<section class=\"card\">\n<h2>" + title + "</h2>\n" +
+         (text.empty() ? "" : "<p class=\"note\">" + text + "</p>\n") + body + "</section>\n";
+}
+
+std::string TimeCards(const Evaluation& evaluation, std::optional<std::size_t> critical) {
+  const auto gospa = [](const InstantScore& now) { return now.gospa; };
+  const auto false_error = [](const InstantScore& now) { return std::sqrt(now.false_pow); };
+  const double c = evaluation.settings.cutoff_m;
+  const auto& own = evaluation.cutoffs.front().own;
+  std::string out = Card(
+      "GOSPA over time, c = " + Number(c) + " m",
+      "LOCAL against every vehicle, V2V and PRIORITY against vehicles that send BSMs, within " +
+          Number(evaluation.settings.radius_m) +
+          " m of the ego. Dashed: the least any list could have, from this run's truth.",
+      OverTime(evaluation, own, critical, "gospa", "GOSPA [m]", 0.0, true, gospa));
+  out += Card("False-track error over time, c = " + Number(c) + " m", "",
+              OverTime(evaluation, own, critical, "false", "false-track error [m]",
+                       c / std::sqrt(2.0) * 1.05, false, false_error));
+  const auto& wide = evaluation.at_cutoff(30.0).all;
+  out += Card("As the paper plots it: c = 30 m, every list against every vehicle",
+              "Its figure 4 (GOSPA) and figure 5 (false tracks). A vehicle without V2V counts as "
+              "missed in V2V and PRIORITY here.",
+              OverTime(evaluation, wide, critical, "gospa30", "GOSPA [m]", 0.0, false, gospa) +
+                  OverTime(evaluation, wide, critical, "false30", "false-track error [m]",
+                           30.0 / std::sqrt(2.0) * 1.05, false, false_error));
+  return out;
+}
+
+std::string Pictures(const Evaluation& evaluation, std::optional<std::size_t> critical) {
+  const std::vector<Moment> moments = ChooseMoments(evaluation, critical);
+  const View view = ChooseView(evaluation, moments, critical);
+  std::string out = BirdsEyeLegend() + "<div class=\"pictures\">\n";
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    out += BirdsEye(evaluation, moments[k], view, critical, std::to_string(k));
+  }
+  return out + "</div>\n";
+}
+
+}  // namespace
+
+std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper) {
+  const auto critical = CriticalVehicle(evaluation);
+  const std::string name =
+      evaluation.log.specs.name.empty() ? "recorded run" : evaluation.log.specs.name;
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>V2Vouch: " +
+      Escape(name) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body><main>\n";
+  out += "<h1>V2Vouch: " + Escape(name) + "</h1>\n<p class=\"sub\">" +
+         Number(evaluation.duration_s, 1) + " s, " +
+         std::to_string(evaluation.headline(ListKind::kLocal).series.size()) +
+         " instants at 20 Hz, " +
+         (evaluation.log.specs.has_ideal_points ? "ideal point targets" : "extended vehicles") +
+         ", disc of " + Number(evaluation.settings.radius_m) + " m round the ego</p>\n";
+  out += Card("Gates", "", GatesHtml(evaluation));
+  out +=
+      Card("The scene",
+           "From above, ego heading up. Moments are chosen around the V2V vehicle that is hidden "
+           "longest after having been seen.",
+           Pictures(evaluation, critical));
+  out += Card("Beside the paper",
+              "Means over the run; missed, false and switching errors are roots, as in the paper. "
+              "The paper's row is its own simulation, whose unit and truth set are not stated; the "
+              "other rows are this run.",
+              ComparisonHtml(evaluation, paper));
+  out += TimeCards(evaluation, critical);
+  if (critical) {
+    out += Card("Vehicle " + std::to_string(evaluation.log.truth.objects[*critical].id) +
+                    ": position error",
+                "Gaps: the list does not hold it.", CriticalError(evaluation, *critical));
+  }
+  out += Card("Who is held when", "", Timeline(evaluation, 24));
+  out += Card("Details", "", DetailsHtml(evaluation));
+  out += Card("How to read this", "", DefinitionsHtml(evaluation));
+  return out + "</main></body></html>\n";
+}
+
+std::string WriteReport(const std::string& folder, const Evaluation& evaluation,
+                        const Evaluation* paper, std::string& error) {
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  const auto path = std::filesystem::path(folder) / "index.html";
+  std::ofstream file(path, std::ios::binary);
+  file << ReportHtml(evaluation, paper);
+  file.close();
+  if (!file) {
+    error = "cannot write " + path.string();
+    return "";
+  }
+  return path.string();
+}
+
+}  // namespace v2vouch::evaluation

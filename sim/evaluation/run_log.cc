@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/evaluation/run_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <v2vouch/bsm_t.hpp>
+#include <v2vouch/camera_detections_t.hpp>
+#include <v2vouch/radar_scan_t.hpp>
+#include <v2vouch/text_t.hpp>
+#include <v2vouch/track_list_t.hpp>
+#include <v2vouch/truth_list_t.hpp>
+
+#include "daemon/io/event_log.h"
+#include "daemon/wire/codec.h"
+
+namespace v2vouch::evaluation {
+namespace {
+
+std::uint32_t SenderFrom(const std::uint8_t id[4]) {
+  return static_cast<std::uint32_t>(id[0]) << 24 | static_cast<std::uint32_t>(id[1]) << 16 |
+         static_cast<std::uint32_t>(id[2]) << 8 | static_cast<std::uint32_t>(id[3]);
+}
+
+bool AllFinite(std::initializer_list<double> values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+class Reader {
+ public:
+  explicit Reader(RunLog& log) : log_(log) {}
+
+  void Take(const LogEvent& event) {
+    const std::string& channel = event.channel;
+    if (channel == "TRACKS_LOCAL") return TakeList(event, ListKind::kLocal);
+    if (channel == "TRACKS_V2V") return TakeList(event, ListKind::kV2v);
+    if (channel == "TRACKS_PRIORITY") return TakeList(event, ListKind::kPriority);
+    if (channel == "TRUTH") return TakeTruth(event);
+    if (channel == "BSM") return TakeBsm(event);
+    if (channel == "SIM_SCENARIO") return TakeScenario(event);
+    if (channel.starts_with("RADAR_")) return TakeLook<radar_scan_t>(event);
+    if (!channel.starts_with("CAMERA_") || channel.ends_with("_IMAGE")) return;
+    TakeLook<camera_detections_t>(event);
+  }
+
+  void Finish() {
+    for (auto& [id, object] : objects_) log_.truth.objects.push_back(std::move(object));
+    log_.specs = ReadSceneSpecs(scenario_);
+    for (const auto& [look, channel] : looks_) {
+      for (std::size_t s = 0; s < log_.specs.sensors.size(); ++s) {
+        if (log_.specs.sensors[s].channel != channel) continue;
+        log_.looks.push_back({look.received, look.stamp, s});
+      }
+    }
+  }
+
+ private:
+  template <class T>
+  std::optional<T> Decoded(const LogEvent& event) {
+    Result<T> message = wire::Decode<T>(event.bytes);
+    if (!message) {
+      ++log_.refused;
+      return std::nullopt;
+    }
+    return std::move(*message);
+  }
+
+  void TakeList(const LogEvent& event, ListKind kind) {
+    const auto message = Decoded<track_list_t>(event);
+    if (!message) return;
+    ReceivedList list{event.received, FromMicros(message->utime), message->stale != 0, {}};
+    for (const track_t& track : message->tracks) {
+      if (track.is_confirmed == 0) continue;
+      if (!AllFinite({track.x_body_m, track.y_body_m, track.yaw_body_rad, track.speed_mps,
+                      track.yaw_rate_radps, track.accel_mps2})) {
+        ++log_.refused;
+        continue;
+      }
+      ListedTrack out;
+      out.id = track.id;
+      out.local_id = track.local_id;
+      out.motion_B = {track.x_body_m,  track.y_body_m,       track.yaw_body_rad,
+                      track.speed_mps, track.yaw_rate_radps, track.accel_mps2};
+      out.position_covariance_B << track.covariance_body[0], track.covariance_body[1],
+          track.covariance_body[6], track.covariance_body[7];
+      out.length_m = track.length_m;
+      out.width_m = track.width_m;
+      out.object_class = track.object_class;
+      out.sender = SenderFrom(track.v2v_id);
+      list.tracks.push_back(out);
+    }
+    log_.lists[Index(kind)].push_back(std::move(list));
+  }
+
+  void TakeTruth(const LogEvent& event) {
+    const auto message = Decoded<truth_list_t>(event);
+    if (!message) return;
+    const Timestamp stamp = FromMicros(message->utime);
+    TruthSample ego;
+    ego.stamp = stamp;
+    ego.motion = {message->ego_x_m,
+                  message->ego_y_m,
+                  message->ego_yaw_rad,
+                  message->ego_speed_mps,
+                  message->ego_yaw_rate_radps,
+                  message->ego_accel_mps2};
+    log_.truth.ego.Add(std::move(ego));
+    for (const truth_object_t& object : message->objects) {
+      TruthObject& out = objects_[object.id];
+      out.id = object.id;
+      out.object_class = object.object_class;
+      out.has_v2v = out.has_v2v || object.has_v2v != 0;
+      out.length_m = object.length_m;
+      out.width_m = object.width_m;
+      out.height_m = object.height_m;
+      TruthSample sample;
+      sample.stamp = stamp;
+      sample.motion = {
+          object.x_m,       object.y_m, object.yaw_rad, object.speed_mps, object.yaw_rate_radps,
+          object.accel_mps2};
+      sample.is_hidden = object.is_hidden != 0;
+      sample.sender = SenderFrom(object.v2v_id);
+      for (const truth_sensor_t& sensor : object.sensors) {
+        sample.looks.push_back(
+            {sensor.sensor, sensor.detection_probability, sensor.visible_fraction});
+      }
+      out.motion.Add(std::move(sample));
+    }
+  }
+
+  void TakeBsm(const LogEvent& event) {
+    const auto message = Decoded<bsm_t>(event);
+    if (message) log_.bsms.push_back({event.received, SenderFrom(message->id)});
+  }
+
+  void TakeScenario(const LogEvent& event) {
+    const auto message = Decoded<text_t>(event);
+    if (message && scenario_.empty()) scenario_ = message->text;
+  }
+
+  template <class T>
+  void TakeLook(const LogEvent& event) {
+    const auto message = Decoded<T>(event);
+    if (!message) return;
+    std::string channel = event.channel;
+    constexpr std::string_view kDetected = "_DETECTED";
+    if (channel.ends_with(kDetected)) channel.resize(channel.size() - kDetected.size());
+    looks_.emplace_back(SensorLook{event.received, FromMicros(message->utime), 0},
+                        std::move(channel));
+  }
+
+  RunLog& log_;
+  std::map<std::int64_t, TruthObject> objects_;
+  std::string scenario_;
+  std::vector<std::pair<SensorLook, std::string>> looks_;
+};
+
+}  // namespace
+
+const char* ListKey(ListKind kind) {
+  constexpr std::array kKeys = {"local", "v2v", "priority"};
+  return kKeys[Index(kind)];
+}
+
+const char* ListTitle(ListKind kind) {
+  constexpr std::array kTitles = {"LOCAL", "V2V", "PRIORITY"};
+  return kTitles[Index(kind)];
+}
+
+bool ReadRunLog(const std::string& path, const std::function<void(double)>& progress, RunLog& log,
+                std::string& error) {
+  const auto reader = LogReader::Open(path, error);
+  if (reader == nullptr) return false;
+  log.path = path;
+  Reader taker(log);
+  LogEvent event;
+  std::optional<Timestamp> first;
+  while (reader->Next(event)) {
+    if (!first) first = event.received;
+    log.log_seconds = std::max(log.log_seconds, ToSeconds(event.received - *first));
+    taker.Take(event);
+    if (progress && log.events % 2000 == 0) progress(reader->progress());
+    ++log.events;
+  }
+  taker.Finish();
+  log.damaged = reader->damaged();
+  if (progress) progress(1.0);
+  return true;
+}
+
+const ReceivedList* NewestBy(const std::vector<ReceivedList>& lists, Timestamp t) {
+  const auto after = std::upper_bound(
+      lists.begin(), lists.end(), t,
+      [](Timestamp value, const ReceivedList& list) { return value < list.received; });
+  return after == lists.begin() ? nullptr : &*(after - 1);
+}
+
+}  // namespace v2vouch::evaluation
