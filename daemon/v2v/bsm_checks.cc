@@ -66,8 +66,12 @@ Claim ToClaim(const Bsm& bsm, double age_s, const EgoPlace& ego, const IntakeCon
   claim.has_elevation = bsm.elevation_m.has_value();
   claim.height_m = bsm.elevation_m.value_or(0.0);
   // A sender of unknown height is put at ours: at 0 it could be half a kilometre below the road.
+  // To the nearest 100 m only, so that the claim does not hang on the last bits of our own pose,
+  // which late data may still change; what is left is taken out along the vertical later.
   Wgs84 place{*bsm.latitude_rad, *bsm.longitude_rad, claim.height_m};
-  if (!claim.has_elevation) place.height_m = ToWgs84({ego.p_E}).height_m;
+  if (!claim.has_elevation) {
+    place.height_m = 100.0 * std::round(ToWgs84({ego.p_E}).height_m / 100.0);
+  }
   claim.p_E = ToEcef(place).p_E;
 
   // J2735 gives the direction of motion and a speed without sign; ours is the vehicle's x axis.

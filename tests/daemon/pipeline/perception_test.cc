@@ -57,17 +57,17 @@ std::string Bits(const TrackList& list, bool with_counts) {
   return bits;
 }
 
-struct Run {
+struct Drive {
   std::string local, priority;  // All lists, every bit.
   TrackList last_local, last_priority;
   ReasonCounts refused{};
   std::size_t most_priority_tracks = 0;
 };
 
-Run Feed(const std::vector<Input>& inputs, const PerceptionConfig& config = {}) {
+Drive Feed(const std::vector<Input>& inputs, const PerceptionConfig& config = {}) {
   Perception perception(config, std::make_unique<NullBiasEstimator>());
   Outputs outputs;
-  Run run;
+  Drive run;
   for (const Input& input : inputs) {
     perception.Step(input, outputs);
     for (const Diagnostic& diagnostic : outputs.diagnostics) {
@@ -83,12 +83,14 @@ Run Feed(const std::vector<Input>& inputs, const PerceptionConfig& config = {}) 
   return run;
 }
 
-std::uint64_t Count(const Run& run, Reason reason) {
+std::uint64_t Count(const Drive& run, Reason reason) {
   return run.refused[static_cast<std::size_t>(reason)];
 }
 
 TEST(Perception, SeesAllCarsAndVouchesForThoseThatTalk) {
-  const Run run = Feed(MakeInputs(Traffic()));
+  SyntheticDrive drive = Traffic();
+  drive.duration_s = 5.0;  // Then the oncoming car is still ahead.
+  const Drive run = Feed(MakeInputs(drive));
   EXPECT_EQ(run.last_local.tracks.size(), 3u);
   ASSERT_EQ(run.last_priority.tracks.size(), 2u);
   EXPECT_NE(run.last_priority.tracks[0].sender, run.last_priority.tracks[1].sender);
@@ -100,31 +102,31 @@ TEST(Perception, SeesAllCarsAndVouchesForThoseThatTalk) {
 
 TEST(Perception, TheSameInputsGiveTheSameBits) {
   const auto inputs = MakeInputs(Traffic());
-  const Run first = Feed(inputs);
-  const Run second = Feed(inputs);
-  EXPECT_EQ(first.local, second.local);
-  EXPECT_EQ(first.priority, second.priority);
+  const Drive first = Feed(inputs);
+  const Drive second = Feed(inputs);
+  EXPECT_TRUE(first.local == second.local);
+  EXPECT_TRUE(first.priority == second.priority);
 }
 
 TEST(Perception, NoBsmAndNoGnssChangesABitOfLocal) {
   SyntheticDrive drive = Traffic();
   const auto inputs = MakeInputs(drive);
-  const Run all = Feed(inputs);
+  const Drive all = Feed(inputs);
   std::vector<Input> own;
   std::copy_if(inputs.begin(), inputs.end(), std::back_inserter(own), [](const Input& input) {
     return !std::holds_alternative<Bsm>(input) && !std::holds_alternative<GnssFix>(input);
   });
-  EXPECT_EQ(all.local, Feed(own).local);
+  EXPECT_TRUE(all.local == Feed(own).local);
 
   drive.gnss_jump_at_s = 5.0;
-  EXPECT_EQ(all.local, Feed(MakeInputs(drive)).local);
+  EXPECT_TRUE(all.local == Feed(MakeInputs(drive)).local);
 
   // Nor a radio that is ahead of us in time, which could push our own frames out of the buffer.
   std::vector<Input> ahead = inputs;
   for (Input& input : ahead) {
     if (auto* bsm = std::get_if<Bsm>(&input)) bsm->stamp += FromSeconds(0.9);
   }
-  EXPECT_EQ(all.local, Feed(ahead).local);
+  EXPECT_TRUE(all.local == Feed(ahead).local);
 }
 
 TEST(Perception, AGhostThatOnlyTalksIsNeverListed) {
@@ -136,7 +138,7 @@ TEST(Perception, AGhostThatOnlyTalksIsNeverListed) {
                                       .sender = static_cast<SenderId>(i + 1),
                                       .is_real = false});
   }
-  const Run run = Feed(MakeInputs(drive));
+  const Drive run = Feed(MakeInputs(drive));
   EXPECT_TRUE(run.last_local.tracks.empty());
   EXPECT_EQ(run.most_priority_tracks, 0u);
 }
@@ -146,7 +148,7 @@ TEST(PerceptionProperty, ArrivalOrderWithinTheBufferDoesNotMatter) {
   SyntheticDrive drive = Traffic();
   drive.duration_s = 4.0;
   const auto in_order = MakeInputs(drive);
-  const Run reference = Feed(in_order);
+  const Drive reference = Feed(in_order);
   ASSERT_FALSE(reference.last_local.tracks.empty());
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     Random random(seed);
@@ -170,12 +172,11 @@ TEST(PerceptionProperty, ArrivalOrderWithinTheBufferDoesNotMatter) {
     auto ordered = in_order;
     ordered.emplace_back(last);
     shuffled.emplace_back(last);
-    const Run expected = Feed(ordered);
-    const Run run = Feed(shuffled);
+    const Drive expected = Feed(ordered);
+    const Drive run = Feed(shuffled);
     EXPECT_EQ(Count(run, Reason::kTooOld), 0u);
-    EXPECT_EQ(Bits(run.last_local, false), Bits(expected.last_local, false)) << "seed " << seed;
-    EXPECT_EQ(Bits(run.last_priority, false), Bits(expected.last_priority, false))
-        << "seed " << seed;
+    EXPECT_TRUE(Bits(run.last_local, false) == Bits(expected.last_local, false)) << seed;
+    EXPECT_TRUE(Bits(run.last_priority, false) == Bits(expected.last_priority, false)) << seed;
   }
 }
 
@@ -226,7 +227,7 @@ TEST(Perception, OldAndRepeatedFramesAreRefusedAndCounted) {
   });
   inputs.push_back(old);
   inputs.push_back(newest_scan);
-  const Run run = Feed(inputs);
+  const Drive run = Feed(inputs);
   EXPECT_EQ(Count(run, Reason::kTooOld), 1u);
   EXPECT_EQ(Count(run, Reason::kDuplicate), 1u);
 }
@@ -247,8 +248,8 @@ TEST(Perception, AStaleCopyChangesNothing) {
     }
     ASSERT_EQ(outputs.has_lists, other.has_lists);
     if (!outputs.has_lists) continue;
-    ASSERT_EQ(Bits(outputs.local, true), Bits(other.local, true));
-    ASSERT_EQ(Bits(outputs.priority, true), Bits(other.priority, true));
+    ASSERT_TRUE(Bits(outputs.local, true) == Bits(other.local, true));
+    ASSERT_TRUE(Bits(outputs.priority, true) == Bits(other.priority, true));
   }
 }
 
@@ -256,8 +257,8 @@ TEST(Perception, ALogPlayedAgainStartsAgain) {
   const auto inputs = MakeInputs(Traffic());
   std::vector<Input> twice = inputs;
   twice.insert(twice.end(), inputs.begin(), inputs.end());
-  const Run once = Feed(inputs);
-  const Run again = Feed(twice);
+  const Drive once = Feed(inputs);
+  const Drive again = Feed(twice);
   EXPECT_EQ(Count(again, Reason::kClockRestart), 1u);
   EXPECT_EQ(again.last_local.tracks.size(), once.last_local.tracks.size());
 }
@@ -265,8 +266,8 @@ TEST(Perception, ALogPlayedAgainStartsAgain) {
 TEST(Perception, AJumpOfTheEgosGnssMovesNoVouchedVehicle) {
   SyntheticDrive drive = Traffic();
   drive.gnss_jump_at_s = 6.0;
-  const Run steady = Feed(MakeInputs(Traffic()));
-  const Run jumped = Feed(MakeInputs(drive));
+  const Drive steady = Feed(MakeInputs(Traffic()));
+  const Drive jumped = Feed(MakeInputs(drive));
   ASSERT_EQ(jumped.last_priority.tracks.size(), steady.last_priority.tracks.size());
   EXPECT_TRUE(jumped.last_priority.ego_gnss_suspect);
   for (std::size_t i = 0; i < steady.last_priority.tracks.size(); ++i) {
