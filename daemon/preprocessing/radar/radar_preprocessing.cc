@@ -83,35 +83,59 @@ void RadarPreprocessor::Process(const RadarScan& scan, const RadarConfig& radar,
     return std::tie(a.range_m, a.azimuth_rad, a.ground_rate_mps, a.object_id) <
            std::tie(b.range_m, b.azimuth_rad, b.ground_rate_mps, b.object_id);
   });
-  order_.resize(reflections_.size());
-  for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<int>(i);
+  order_.clear();  // Moving ones first: the two kinds are clustered apart.
+  for (const bool is_standing : {false, true}) {
+    for (std::size_t i = 0; i < reflections_.size(); ++i) {
+      if (reflections_[i].is_standing == is_standing) order_.push_back(static_cast<int>(i));
+    }
+    if (!is_standing) moving_ = order_.size();
+  }
 
   if (radar.output == RadarOutput::kObjects) {
     for (const int& member : order_) Emit({&member, 1}, radar, antenna, measurements);
   } else {
-    ClusterAndEmit(radar, antenna, measurements);
+    Cluster();
+    if (config_.vehicle_gap_m > 0.0) {
+      // The tolerance of Doppler holds the same terms as that of standing, at the worst azimuth.
+      const double across_mps = antenna.velocity_R.norm() * radar.azimuth_sigma_rad;
+      merge_.Run(reflections_,
+                 {.gap_m = config_.vehicle_gap_m,
+                  .length_m = config_.vehicle_length_m,
+                  .width_m = config_.vehicle_width_m,
+                  .range_sigma_m = radar.range_sigma_m,
+                  .azimuth_sigma_rad = radar.azimuth_sigma_rad,
+                  .ground_rate_sigma_mps = std::hypot(radar.range_rate_sigma_mps, across_mps)},
+                 clustered_, ends_);
+    }
+    std::size_t from = 0;
+    for (const std::size_t to : ends_) {
+      Emit(std::span(clustered_).subspan(from, to - from), radar, antenna, measurements);
+      from = to;
+    }
   }
   for (RadarMeasurement& measurement : measurements) measurement.radar = scan.radar;
   std::sort(measurements.begin(), measurements.end(), ByAzimuthThenRange);
 }
 
-// Clusters the reflections and emits the clusters that are short enough; the others are tried again
+// Clusters the reflections and keeps the clusters that are short enough; the others are tried again
 // with a smaller radius: a car's reflections lie closer together than a wall's.
-void RadarPreprocessor::ClusterAndEmit(const RadarConfig& radar, const AntennaMotion& antenna,
-                                       std::vector<RadarMeasurement>& measurements) {
+void RadarPreprocessor::Cluster() {
   constexpr double kShrink = 0.6;
   constexpr int kDeepest = 3;
-  pieces_.assign(1, {0, order_.size(), 0});
+  clustered_.clear();
+  ends_.clear();
+  pieces_.assign({{0, moving_, 0}, {moving_, order_.size(), 0}});
   while (!pieces_.empty()) {
     const Piece piece = pieces_.back();
     pieces_.pop_back();
     const auto members = std::span(order_).subspan(piece.begin, piece.end - piece.begin);
+    const bool is_standing = piece.begin >= moving_;
     const std::size_t whole = members.size();
     std::span<const std::size_t> ends(&whole, 1);
     if (piece.depth <= kDeepest) {
       ends = dbscan_.Run(reflections_,
-                         {.eps_m = config_.eps_m,
-                          .eps_per_m = config_.eps_per_m,
+                         {.eps_m = is_standing ? config_.static_eps_m : config_.eps_m,
+                          .eps_per_m = is_standing ? config_.static_eps_per_m : config_.eps_per_m,
                           .eps_speed_mps = config_.eps_speed_mps,
                           .min_points = config_.min_points,
                           .scale = std::pow(kShrink, piece.depth)},
@@ -132,9 +156,9 @@ void RadarPreprocessor::ClusterAndEmit(const RadarConfig& radar, const AntennaMo
         high = high.cwiseMax(Eigen::Vector2d(r.x_m, r.y_m));
       }
       const Eigen::Vector2d size = high - low;
-      const bool is_standing = reflections_[static_cast<std::size_t>(cluster[0])].is_standing;
       if (size.norm() <= (is_standing ? config_.max_static_length_m : config_.max_length_m)) {
-        Emit(cluster, radar, antenna, measurements);
+        clustered_.insert(clustered_.end(), cluster.begin(), cluster.end());
+        ends_.push_back(clustered_.size());
       } else if (piece.depth < kDeepest) {
         pieces_.push_back({begin, end, piece.depth + 1});
       } else {

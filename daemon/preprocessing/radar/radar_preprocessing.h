@@ -12,20 +12,26 @@
 #include "daemon/data/measurement.h"
 #include "daemon/data/vehicle.h"
 #include "daemon/preprocessing/radar/dbscan.h"
+#include "daemon/preprocessing/radar/vehicle_merge.h"
 
 namespace v2vouch {
 
 /// Settings of the radar stage (DESIGN 5.1).
 struct RadarPreprocessingConfig {
-  double min_snr_db = 6.0;        ///< Weaker reflections are dropped, where the sensor gives SNR.
-  double min_rcs_dbsm = -15.0;    ///< Smaller ones too, where it gives RCS: up to 10 m ...
-  double rcs_slope_db = 0.0;      ///< ... and this much more per doubling of range beyond.
-  double eps_m = 1.6;             ///< DBSCAN radius at the antenna.
-  double eps_per_m = 0.015;       ///< Growth of the radius with range: lateral noise does the same.
-  double eps_speed_mps = 1.5;     ///< Compensated Doppler that counts as one radius.
-  int min_points = 1;             ///< Returns of a core point, itself included.
-  double static_speed_mps = 0.6;  ///< |ground range rate| below this may be standing.
-  double max_length_m = 20.0;     ///< Longer moving clusters are taken apart.
+  double min_snr_db = 6.0;      ///< Weaker reflections are dropped, where the sensor gives SNR.
+  double min_rcs_dbsm = -15.0;  ///< Smaller ones too, where it gives RCS: up to 10 m ...
+  double rcs_slope_db = 0.0;    ///< ... and this much more per doubling of range beyond.
+  double eps_m = 1.2;           ///< DBSCAN radius of moving reflections at the antenna ...
+  double eps_per_m = 0.005;     ///< ... and its growth with range, as lateral noise grows.
+  double static_eps_m = 1.6;    ///< The same two of standing ones, whose clusters never join.
+  double static_eps_per_m = 0.015;
+  double eps_speed_mps = 1.5;        ///< Compensated Doppler that counts as one radius.
+  int min_points = 1;                ///< Returns of a core point, itself included.
+  double vehicle_gap_m = 4.0;        ///< Moving clusters this close may join; 0: they never do ...
+  double vehicle_length_m = 13.0;    ///< ... if they fit a box this long along their motion ...
+  double vehicle_width_m = 2.2;      ///< ... and this wide across it.
+  double static_speed_mps = 0.6;     ///< |ground range rate| below this may be standing.
+  double max_length_m = 20.0;        ///< Longer moving clusters are taken apart.
   double max_static_length_m = 8.0;  ///< Longer standing ones too: a car must not drown in a wall.
 
   template <class Archive>
@@ -35,8 +41,13 @@ struct RadarPreprocessingConfig {
     a.Field("rcs_slope_db", rcs_slope_db, {.at_least = 0.0, .at_most = 12.0});
     a.Field("eps_m", eps_m, {.above = 0.0, .at_most = 10.0});
     a.Field("eps_per_m", eps_per_m, {.at_least = 0.0, .at_most = 0.2});
+    a.Field("static_eps_m", static_eps_m, {.above = 0.0, .at_most = 10.0});
+    a.Field("static_eps_per_m", static_eps_per_m, {.at_least = 0.0, .at_most = 0.2});
     a.Field("eps_speed_mps", eps_speed_mps, {.above = 0.0, .at_most = 20.0});
     a.Field("min_points", min_points, {.at_least = 1, .at_most = 20});
+    a.Field("vehicle_gap_m", vehicle_gap_m, {.at_least = 0.0, .at_most = 10.0});
+    a.Field("vehicle_length_m", vehicle_length_m, {.above = 1.0, .at_most = 30.0});
+    a.Field("vehicle_width_m", vehicle_width_m, {.above = 0.5, .at_most = 5.0});
     a.Field("static_speed_mps", static_speed_mps, {.above = 0.0, .at_most = 5.0});
     a.Field("max_length_m", max_length_m, {.above = 1.0, .at_most = 100.0});
     a.Field("max_static_length_m", max_static_length_m, {.above = 1.0, .at_most = 100.0});
@@ -65,6 +76,9 @@ AntennaMotion MotionOfAntenna(const RadarConfig& radar, const EgoState& ego);
 /// A vehicle crossing the ray shows no Doppler and passes as standing too: is_static says what one
 /// look can say, no more. Standing and moving reflections never share a cluster, so a close
 /// crossing vehicle may come out in two or three clusters.
+///
+/// *One vehicle in pieces*: moving clusters that can be one vehicle are joined (vehicle_merge.h),
+/// so that the radius may stay small enough to keep two cars side by side apart.
 ///
 /// *Too long* clusters (facades, guard rails, queues) are clustered again with 0.6, 0.36, 0.22 of
 /// the radius, and cut in halves where even that leaves one too long.
@@ -95,8 +109,7 @@ class RadarPreprocessor {
   [[nodiscard]] bool IsKept(const RadarDetection& detection, const RadarConfig& radar) const;
   void Emit(std::span<const int> members, const RadarConfig& radar, const AntennaMotion& antenna,
             std::vector<RadarMeasurement>& measurements) const;
-  void ClusterAndEmit(const RadarConfig& radar, const AntennaMotion& antenna,
-                      std::vector<RadarMeasurement>& measurements);
+  void Cluster();
 
   struct Piece {  // order_[begin, end), to be clustered with the radius of that depth.
     std::size_t begin = 0;
@@ -106,9 +119,13 @@ class RadarPreprocessor {
 
   RadarPreprocessingConfig config_;
   Dbscan dbscan_;
+  VehicleMerge merge_;
   std::vector<Reflection> reflections_;  // Kept ones, ordered by range.
   std::vector<int> order_;               // Indices into them, cluster by cluster.
+  std::size_t moving_ = 0;               // Those before are moving, the rest standing.
   std::vector<Piece> pieces_;
+  std::vector<int> clustered_;  // Finished clusters, one after another, each ending at an end.
+  std::vector<std::size_t> ends_;
 };
 
 }  // namespace v2vouch

@@ -313,29 +313,60 @@ TEST(RadarClusterQuality, ASingleCarIsMostlyOneCluster) {
   const Car same_way{0, 0, 0.0, 15.0};
   const Car oncoming{0, 0, kPi, 12.0};
   const Car crossing{0, 0, FromDegrees(90.0), 10.0};
-  EXPECT_GE(ShareInOneCluster(kFront, same_way, 15.0, 100.0), 0.68);
-  EXPECT_GE(ShareInOneCluster(kFront, oncoming, 15.0, 100.0), 0.68);
-  EXPECT_GE(ShareInOneCluster(kFront, crossing, 25.0, 80.0), 0.44);
-  EXPECT_GE(ShareInOneCluster(kLeft, same_way, 10.0, 60.0), 0.40);
+  const Car truck{0, 0, 0.0, 15.0, 12.0, 2.5};
+  const Car standing{0, 0, 0.0, 0.0};
+  EXPECT_GE(ShareInOneCluster(kFront, same_way, 15.0, 100.0), 0.95);
+  EXPECT_GE(ShareInOneCluster(kFront, oncoming, 15.0, 100.0), 0.91);
+  EXPECT_GE(ShareInOneCluster(kLeft, same_way, 10.0, 60.0), 0.94);
+  // Its middle shows no Doppler and passes as standing.
+  EXPECT_GE(ShareInOneCluster(kFront, crossing, 25.0, 80.0), 0.68);
+  EXPECT_GE(ShareInOneCluster(kLeft, crossing, 10.0, 60.0), 0.80);
+  // Three to six reflections on twelve metres leave gaps that two cars may leave too.
+  EXPECT_GE(ShareInOneCluster(kFront, truck, 20.0, 100.0), 0.42);
+  // No motion, no direction: the radius alone decides.
+  EXPECT_GE(ShareInOneCluster(kFront, standing, 15.0, 100.0), 0.66);
 }
 
-TEST(RadarClusterQuality, NeighboursStayApart) {
+// Two cars side by side at about the same speed, lanes 3.5 m apart.
+double ShareApart(const RadarConfig& radar, double near_m, double far_m) {
   Random random(9);
   const EgoState ego = Ego(20.0);
-  int apart = 0;
   const int trials = 1000;
+  int apart = 0;
   for (int trial = 0; trial < trials; ++trial) {
-    const double x = random.Uniform(15.0, 60.0);
+    const double x = random.Uniform(near_m, far_m);
     std::vector<RadarDetection> detections;
-    Reflect({x, 0.0, 0.0, 18.0}, kFront, ego, 4, random, detections);
-    Reflect({x + random.Uniform(-2.0, 2.0), 3.5, 0.0, 18.0 + random.Normal()}, kFront, ego, 4,
+    Reflect({x, 0.0, 0.0, 18.0}, radar, ego, 4, random, detections);
+    Reflect({x + random.Uniform(-2.0, 2.0), 3.5, 0.0, 18.0 + random.Normal()}, radar, ego, 4,
             random, detections);
-    const auto m = Process(kFront, ego, detections);
-    bool mixed = false;
-    for (const auto& c : m) mixed |= c.returns > 4;
+    const auto m = Process(radar, ego, detections);
+    const bool mixed = std::any_of(m.begin(), m.end(), [](const auto& c) { return c.returns > 4; });
     apart += mixed ? 0 : 1;
   }
-  EXPECT_GE(apart, 0.83 * trials);
+  return apart / static_cast<double>(trials);
+}
+
+TEST(RadarClusterQuality, NeighboursMostlyStayApart) {
+  EXPECT_GE(ShareApart(kFront, 15.0, 60.0), 0.90);
+  EXPECT_GE(ShareApart(kFront, 60.0, 120.0), 0.74);
+  EXPECT_GE(ShareApart(kLeft, 8.0, 40.0), 0.79);
+}
+
+TEST(RadarPreprocessor, TwoPiecesOfOneFlankJoinTwoCarsDoNot) {
+  const EgoState ego = Ego(10.0);
+  const auto clusters = [&](const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& v) {
+    std::vector<RadarDetection> detections;
+    for (const auto& p : points) detections.push_back(Ideal(kFront, ego, p, v));
+    return Process(kFront, ego, detections).size();
+  };
+  // 3.5 m apart along the motion: front and rear of one flank. Across it: two cars abreast.
+  const std::vector<Eigen::Vector2d> along = {{30.0, 4.0}, {30.4, 4.0}, {33.9, 4.0}, {34.2, 4.0}};
+  const std::vector<Eigen::Vector2d> abreast = {{30.0, 0.0}, {30.0, 0.4}, {30.0, 3.9}, {30.0, 4.2}};
+  EXPECT_EQ(clusters(along, {15.0, 0.0}), 1U);
+  EXPECT_EQ(clusters(abreast, {15.0, 0.0}), 2U);
+  // The same places, driving the other way round: crossing from the right.
+  EXPECT_EQ(clusters(abreast, {6.0, 15.0}), 1U);
+  EXPECT_EQ(clusters(along, {6.0, 15.0}), 2U);
 }
 
 }  // namespace
