@@ -117,6 +117,13 @@ void VehicleMerge::Run(std::span<const Reflection> reflections, const VehicleSha
       const double dy = reflections[i].y_m - reflections[j].y_m;
       const double gap2 = dx * dx + dy * dy;
       if (gap2 > reach_m * reach_m) continue;
+      // Cheap and early: no plausible speed across the ray explains this change of Doppler.
+      const double rate_mps = reflections[i].ground_rate_mps - reflections[j].ground_rate_mps;
+      const double turn_rad = std::sqrt(gap2) / std::max(reflections[i].range_m, 1.0);
+      if (std::abs(rate_mps) >
+          3.0 * kAcrossPrior_mps * turn_rad + 5.0 * shape.ground_rate_sigma_mps) {
+        continue;
+      }
       edges_.push_back({gap2, std::min(cluster_of_[i], cluster_of_[j]),
                         std::max(cluster_of_[i], cluster_of_[j])});
     }
