@@ -90,8 +90,7 @@ void DrawGround(Svg& svg, const Evaluation& evaluation, const Window& window) {
   }
 }
 
-void DrawTruth(Svg& svg, const Evaluation& evaluation, const Window& window, Timestamp t,
-               std::optional<std::size_t> critical) {
+void DrawTruth(Svg& svg, const Evaluation& evaluation, const Window& window, Timestamp t) {
   for (std::size_t o = 0; o < evaluation.log.truth.objects.size(); ++o) {
     const TruthObject& object = evaluation.log.truth.objects[o];
     const auto motion = object.motion.At(t);
@@ -107,12 +106,30 @@ void DrawTruth(Svg& svg, const Evaluation& evaluation, const Window& window, Tim
     svg.Polygon({box[0], box[3], tip}, std::string("fill=\"") +
                                            (is_hidden ? colour::kAlarm : colour::kInk) +
                                            "\" fill-opacity=\"0.55\"");
-    if (!object.is_vehicle()) continue;
-    const bool is_critical = critical && *critical == o;
-    svg.Text(middle.x() + 0.5 * object.width_m * window.scale() + 6.0, middle.y() + 3.5,
-             std::to_string(object.id) + (object.has_v2v ? " V2V" : ""),
-             is_critical ? "class=\"id critical\"" : "class=\"id\"");
   }
+}
+
+/// Names of the vehicles, drawn last so that nothing covers them; the critical one's at the very
+/// end.
+void DrawNames(Svg& svg, const Evaluation& evaluation, const Window& window, Timestamp t,
+               std::optional<std::size_t> critical) {
+  const auto draw = [&](std::size_t o, const char* style) {
+    const TruthObject& object = evaluation.log.truth.objects[o];
+    const auto motion = object.motion.At(t);
+    if (!motion || !object.is_vehicle()) return;
+    double right = 0.0;
+    const Eigen::Vector2d middle = window(motion->position());
+    for (const auto& corner :
+         window(Corners(motion->position(), motion->yaw_rad, object.length_m, object.width_m))) {
+      right = std::max(right, corner.x() - middle.x());
+    }
+    svg.Text(middle.x() + right + 4.0, middle.y() + 3.5,
+             std::to_string(object.id) + (object.has_v2v ? " V2V" : ""), style);
+  };
+  for (std::size_t o = 0; o < evaluation.log.truth.objects.size(); ++o) {
+    if (!critical || *critical != o) draw(o, "class=\"id\"");
+  }
+  if (critical) draw(*critical, "class=\"id critical\"");
 }
 
 void DrawList(Svg& svg, const Evaluation& evaluation, const Window& window, Timestamp t,
@@ -179,7 +196,7 @@ std::string BirdsEye(const Evaluation& evaluation, const Moment& moment, const V
   svg.Rect(0.0, kTitle, kWidth, window.height(), "fill=\"#f7f8fa\"");
   svg.OpenClip("view-" + id, 0.0, kTitle, kWidth, window.height());
   DrawGround(svg, evaluation, window);
-  DrawTruth(svg, evaluation, window, t, critical);
+  DrawTruth(svg, evaluation, window, t);
   const SceneSpecs& specs = evaluation.log.specs;
   const Eigen::Vector2d centre = ego->position() + specs.ego_centre_x_m * ego->direction();
   svg.Polygon(window(Corners(centre, ego->yaw_rad, specs.ego_length_m, specs.ego_width_m)),
@@ -187,6 +204,7 @@ std::string BirdsEye(const Evaluation& evaluation, const Moment& moment, const V
   for (const ListKind kind : {ListKind::kV2v, ListKind::kLocal, ListKind::kPriority}) {
     DrawList(svg, evaluation, window, t, kind);
   }
+  DrawNames(svg, evaluation, window, t, critical);
   svg.Close();
   svg.Rect(0.5, kTitle + 0.5, kWidth - 1.0, window.height() - 1.0, Stroke("#c3c9d1", "1"));
   return svg.Finish();
@@ -202,18 +220,18 @@ std::string BirdsEyeLegend() {
   svg.Rect(x, 6.0, 20.0, 10.0, std::string("fill=\"") + colour::kInk + "\"");
   text("ego", 66.0);
   svg.Rect(x, 6.0, 20.0, 10.0, kTruthStyle);
-  text("true vehicle", 118.0);
+  text("true vehicle", 124.0);
   svg.Rect(x, 6.0, 20.0, 10.0, kHiddenStyle);
-  text("hidden from every sensor", 198.0);
+  text("hidden from every sensor", 222.0);
   svg.Rect(x, 6.0, 20.0, 10.0, Stroke(colour::kLocal, "1.6"));
-  text("LOCAL track", 118.0);
+  text("LOCAL track", 126.0);
   svg.Rect(x, 6.0, 20.0, 10.0, Stroke(colour::kPriority, "2"));
-  text("PRIORITY track", 136.0);
+  text("PRIORITY track", 142.0);
   svg.Line(x + 6.0, 7.0, x + 14.0, 15.0, Stroke(colour::kV2v, "1.8"));
   svg.Line(x + 6.0, 15.0, x + 14.0, 7.0, Stroke(colour::kV2v, "1.8"));
-  text("V2V claim", 102.0);
+  text("V2V claim", 108.0);
   svg.Circle(x + 10.0, 11.0, 7.0, Stroke(colour::kMuted, "1"));
-  text("2-sigma ellipse", 128.0);
+  text("2-sigma ellipse", 138.0);
   svg.Rect(x, 6.0, 20.0, 10.0, "fill=\"#dfe3e8\" stroke=\"#c3c9d1\"");
   text("building", 60.0);
   return svg.Finish();

@@ -11,9 +11,9 @@ namespace v2vouch::evaluation {
 
 /// What a bird's-eye picture shows of the ground, in the ego's body frame [m].
 struct View {
-  double ahead_m = 75.0;
-  double behind_m = 25.0;
-  double aside_m = 42.0;
+  double ahead_m = 62.0;
+  double behind_m = 22.0;
+  double aside_m = 34.0;
 };
 
 /// One window for all moments: wide enough for the critical vehicle in each of them.

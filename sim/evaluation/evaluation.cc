@@ -58,8 +58,11 @@ void SetGates(Evaluation& evaluation) {
   for (const ListKind kind : {ListKind::kLocal, ListKind::kPriority}) {
     const ListScore& score = evaluation.headline(kind);
     const std::string key = ListKey(kind);
+    // A list that holds nothing is not thereby accurate, unless there was nothing to hold.
+    const bool has_any =
+        !score.pairs.empty() || score.bound_missed_seconds >= score.vehicle_seconds;
     evaluation.gates.push_back(
-        {key + "_localisation_ratio", score.localisation_ratio, localisation});
+        {key + "_localisation_ratio", score.localisation_ratio, localisation, has_any});
     evaluation.gates.push_back(
         {key + "_excess_missed_share", score.excess_missed_share, kExcessMissedShare});
     evaluation.gates.push_back({key + "_false_per_instant", score.false_per_instant(),

@@ -15,7 +15,8 @@ struct Gate {
   std::string name;
   double value = 0.0;
   double limit = 0.0;
-  [[nodiscard]] bool passes() const { return value <= limit; }
+  bool is_measured = true;  ///< False: the list holds nothing that could be measured.
+  [[nodiscard]] bool passes() const { return is_measured && value <= limit; }
 };
 
 /// Errors of hidden vehicles that PRIORITY kept.

@@ -228,8 +228,9 @@ std::string ListSummaryJson(const RunLog& log) {
 }
 
 std::string ListSummary(const RunLog& log) {
-  std::string out = Line("%.1f s of log, %lld events, no judgement without truth\n",
-                         log.log_seconds, static_cast<long long>(log.events));
+  std::string out =
+      Line("%.1f s of log, %lld events%s\n", log.log_seconds, static_cast<long long>(log.events),
+           log.truth.empty() ? "; no truth, so nothing can be judged" : "");
   out += "  list       lists  stale  seconds  tracks at a time  distinct  longest [s]\n";
   for (const ListKind kind : kLists) {
     const ListCounts counts = CountList(log.lists[Index(kind)]);

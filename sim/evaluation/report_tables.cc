@@ -84,9 +84,9 @@ std::string GatesHtml(const Evaluation& evaluation) {
     const char* unit = is_share ? " %" : "";
     out += std::string("<div class=\"gate") + (gate.passes() ? "" : " miss") +
            "\"><div class=\"what\">" + GateTitle(gate.name) + "</div><b>" +
-           Number(scale * gate.value, is_share ? 1 : 3) + unit + "</b> <span class=\"limit\">" +
-           (gate.passes() ? "ok, " : "missed, ") + "at most " + Number(scale * gate.limit) + unit +
-           "</span></div>\n";
+           (gate.is_measured ? Number(scale * gate.value, is_share ? 1 : 3) + unit : "none") +
+           "</b> <span class=\"limit\">" + (gate.passes() ? "ok, " : "missed, ") + "at most " +
+           Number(scale * gate.limit) + unit + "</span></div>\n";
   }
   return out + "</div>\n";
 }

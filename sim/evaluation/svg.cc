@@ -185,7 +185,7 @@ std::string Draw(const Plot& plot) {
   double x = kLeft;
   const auto legend_text = [&](const std::string& label) {
     svg.Text(x, 19.0, label, "class=\"legend\"");
-    x += 7.0 * static_cast<double>(label.size()) + 26.0;
+    x += 7.6 * static_cast<double>(label.size()) + 26.0;
   };
   for (const auto& series : plot.series) {
     svg.Line(x, 15.0, x + 22.0, 15.0,

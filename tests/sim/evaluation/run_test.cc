@@ -133,6 +133,9 @@ TEST(RunWithoutLists, IsAllMissed) {
   EXPECT_EQ(local.missed_seconds, local.vehicle_seconds);
   EXPECT_FALSE(local.has_lists);
   EXPECT_EQ(local.localisation_rms_m, 0.0);
+  for (const Gate& gate : evaluation->gates) {
+    EXPECT_EQ(gate.passes(), gate.name.ends_with("false_per_instant")) << gate.name;
+  }
 }
 
 TEST(RunWithoutTruth, IsCountedButNotJudged) {
