@@ -100,6 +100,13 @@ AntennaMotion MotionOfAntenna(const RadarConfig& radar, const EgoState& ego);
 class RadarPreprocessor {
  public:
   explicit RadarPreprocessor(const RadarPreprocessingConfig& config) : config_(config) {}
+  /// A copy takes over the settings only: the buffers say nothing from one scan to the next, and a
+  /// checkpoint must stay cheap.
+  RadarPreprocessor(const RadarPreprocessor& other) : config_(other.config_) {}
+  RadarPreprocessor& operator=(const RadarPreprocessor& other) {
+    config_ = other.config_;
+    return *this;
+  }
 
   /// Replaces the content of `measurements`.
   void Process(const RadarScan& scan, const RadarConfig& radar, const EgoState& ego,

@@ -251,6 +251,24 @@ TEST(RadarPreprocessor, OrderOfDetectionsSaysNothing) {
   }
 }
 
+TEST(RadarPreprocessor, ACopyGivesTheSameAnswers) {
+  RadarPreprocessingConfig config;
+  config.vehicle_gap_m = 0.0;
+  RadarPreprocessor original(config);
+  RadarScan scan;
+  scan.detections = {Plain(30.0, 0.0, 5.0), Plain(33.0, 0.0, 5.0)};  // Two, where none may join.
+  std::vector<RadarMeasurement> a;
+  std::vector<RadarMeasurement> b;
+  original.Process(scan, kFront, Ego(0.0), a);
+  RadarPreprocessor copy(RadarPreprocessingConfig{});
+  copy.Process(scan, kFront, Ego(0.0), b);
+  EXPECT_EQ(a.size(), 2U);
+  EXPECT_EQ(b.size(), 1U);
+  copy = original;
+  copy.Process(scan, kFront, Ego(0.0), b);
+  EXPECT_EQ(b.size(), 2U);
+}
+
 TEST(RadarPreprocessor, AStandingCarBesideAWallIsFoundAndAMovingOneNeverJoinsIt) {
   Random random(21);
   const EgoState ego = Ego(10.0);
