@@ -57,7 +57,7 @@ double ClaimedAge(const Bsm& bsm, const IntakeConfig& config) {
   return static_cast<double>(age_us) * 1e-6;
 }
 
-Claim ToClaim(const Bsm& bsm, double age_s, const EgoPlace& ego, const IntakeConfig& config) {
+Claim ToClaim(const Bsm& bsm, double age_s, const IntakeConfig& config) {
   Claim claim;
   claim.sender = bsm.sender;
   claim.certificate = bsm.certificate;
@@ -65,13 +65,9 @@ Claim ToClaim(const Bsm& bsm, double age_s, const EgoPlace& ego, const IntakeCon
   claim.age_s = std::max(0.0, age_s);  // Clocks differ by a little.
   claim.has_elevation = bsm.elevation_m.has_value();
   claim.height_m = bsm.elevation_m.value_or(0.0);
-  // A sender of unknown height is put at ours: at 0 it could be half a kilometre below the road.
-  // To the nearest 100 m only, so that the claim does not hang on the last bits of our own pose,
-  // which late data may still change; what is left is taken out along the vertical later.
-  Wgs84 place{*bsm.latitude_rad, *bsm.longitude_rad, claim.height_m};
-  if (!claim.has_elevation) {
-    place.height_m = 100.0 * std::round(ToWgs84({ego.p_E}).height_m / 100.0);
-  }
+  // A sender of unknown height is put at 0: everything that compares places does so along the
+  // vertical, and so the claim stays a function of the message alone.
+  const Wgs84 place{*bsm.latitude_rad, *bsm.longitude_rad, claim.height_m};
   claim.p_E = ToEcef(place).p_E;
 
   // J2735 gives the direction of motion and a speed without sign; ours is the vehicle's x axis.

@@ -18,7 +18,7 @@ double ClaimedAge(const Bsm& bsm, const IntakeConfig& config);
 
 /// The claim of a BSM without content problem. A yaw rate that cannot be (over 1.5 rad/s, or
 /// over 12 m/s^2 sideways) is taken for none.
-Claim ToClaim(const Bsm& bsm, double age_s, const EgoPlace& ego, const IntakeConfig& config);
+Claim ToClaim(const Bsm& bsm, double age_s, const IntakeConfig& config);
 
 /// The claim is our own: same place, speed and course, less the way since its time.
 bool IsOwnEcho(const Claim& claim, const EgoPlace& ego, const IntakeConfig& config);

@@ -37,7 +37,7 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
   if (age < -config_.max_future_s) return Reason::kBsmFuture;
   if (config_.own_id != 0 && bsm.sender == config_.own_id) return Reason::kBsmOwnEcho;
   if (!ego.is_known) return Reason::kNoGnss;
-  const Claim claim = ToClaim(bsm, age, ego, config_);
+  const Claim claim = ToClaim(bsm, age, config_);
   if (IsOwnEcho(claim, ego, config_)) return Reason::kBsmOwnEcho;
   if (HorizontalDistance(ego.p_E, claim.p_E) > config_.max_distance_m) {
     return Reason::kBsmImplausible;

@@ -54,8 +54,7 @@ struct IntakeConfig {
   }
 };
 
-/// Where the ego believes to be, for the own-echo and distance checks and for the height of senders
-/// that do not tell theirs.
+/// Where the ego believes to be, for the own-echo and distance checks. Its height does not matter.
 struct EgoPlace {
   Eigen::Vector3d p_E = Eigen::Vector3d::Zero();  ///< Centre of the ego's footprint.
   Eigen::Vector3d course_E = Eigen::Vector3d::UnitX();
@@ -63,9 +62,9 @@ struct EgoPlace {
   bool is_known = false;
 };
 
-/// One sender as heard. Function of its own messages alone (never of the ego, but for the height of
-/// a sender that does not tell it), so it is never rolled back. State lives in a plane anchored
-/// where the sender was first heard, moved along every 2 km.
+/// One sender as heard. Function of its own messages alone (never of the ego), so it is never
+/// rolled back. A sender that tells no height is at 0; compare places with HorizontalDistance.
+/// State lives in a plane anchored where the sender was first heard, moved along every 2 km.
 struct SenderTrack {
   SenderId sender = 0;
   Claim latest;

@@ -69,7 +69,7 @@ TEST(ClaimedAge, IsTheDefaultWhereNoTimeIsTold) {
 TEST(ToClaim, CarriesPlaceCourseAndSpeed) {
   TalkingCar car;
   car.yaw_rad = 0.8;
-  const Claim claim = ToClaim(car.Say(), 0.1, EgoAtCrossroads(), {});
+  const Claim claim = ToClaim(car.Say(), 0.1, {});
   const Eigen::Vector3d p_L = LocalPlane(kCrossroads).ToLocal(EcefPoint{claim.p_E}).p_L;
   EXPECT_LT((p_L - Eigen::Vector3d(60.0, -20.0, 0.0)).norm(), 1e-6);
   const Eigen::Vector3d course_L = LocalPlane(kCrossroads).R_LE() * claim.course_E;
@@ -78,34 +78,35 @@ TEST(ToClaim, CarriesPlaceCourseAndSpeed) {
   EXPECT_EQ(claim.speed_mps, 10.0);
   EXPECT_TRUE(claim.has_elevation);
   EXPECT_EQ(claim.age_s, 0.1);
-  EXPECT_EQ(ToClaim(car.Say(), -0.2, EgoAtCrossroads(), {}).age_s, 0.0);
+  EXPECT_EQ(ToClaim(car.Say(), -0.2, {}).age_s, 0.0);
 }
 
 TEST(ToClaim, InReverseTheVehicleLooksTheOtherWay) {
   TalkingCar car;
   Bsm bsm = car.Say();
   bsm.transmission = Transmission::kReverse;
-  const Claim claim = ToClaim(bsm, 0.1, EgoAtCrossroads(), {});
-  const Claim forward = ToClaim(car.Say(), 0.1, EgoAtCrossroads(), {});
+  const Claim claim = ToClaim(bsm, 0.1, {});
+  const Claim forward = ToClaim(car.Say(), 0.1, {});
   EXPECT_EQ(claim.speed_mps, -10.0);
   EXPECT_LT((claim.course_E + forward.course_E).norm(), 1e-12);
   // The same motion over ground.
   EXPECT_LT((claim.speed_mps * claim.course_E - forward.speed_mps * forward.course_E).norm(), 1e-9);
 }
 
-TEST(ToClaim, AnUnknownElevationIsTheEgosOwn) {
+TEST(ToClaim, AnUnknownElevationIsZeroAndMovesNothingSideways) {
   Bsm bsm = TalkingCar{}.Say();
   bsm.elevation_m.reset();
-  const Claim claim = ToClaim(bsm, 0.1, EgoAtCrossroads(), {});
+  const Claim claim = ToClaim(bsm, 0.1, {});
   EXPECT_FALSE(claim.has_elevation);
-  EXPECT_NEAR(ToWgs84({claim.p_E}).height_m, 250.0, 1e-3);
+  EXPECT_NEAR(ToWgs84({claim.p_E}).height_m, 0.0, 1e-6);
+  EXPECT_NEAR(HorizontalDistance(EgoAtCrossroads().p_E, claim.p_E), std::hypot(60.0, 20.0), 0.01);
 }
 
 TEST(ToClaim, ReportedAccuracyIsClampedAndNeverWidensTheGate) {
   const auto claim = [](std::optional<double> semi_major_m) {
     Bsm bsm = TalkingCar{}.Say();
     bsm.semi_major_m = semi_major_m;
-    return ToClaim(bsm, 0.1, EgoAtCrossroads(), {});
+    return ToClaim(bsm, 0.1, {});
   };
   EXPECT_EQ(claim(0.05).position_sigma_m, 0.5);
   EXPECT_EQ(claim(1.45).position_sigma_m, 1.45);
@@ -119,12 +120,12 @@ TEST(ToClaim, ReportedAccuracyIsClampedAndNeverWidensTheGate) {
 TEST(ToClaim, AnImpossibleYawRateIsTakenForNone) {
   Bsm bsm = TalkingCar{}.Say();
   bsm.yaw_rate_radps = 0.5;
-  EXPECT_EQ(ToClaim(bsm, 0.1, EgoAtCrossroads(), {}).yaw_rate_radps, 0.5);
+  EXPECT_EQ(ToClaim(bsm, 0.1, {}).yaw_rate_radps, 0.5);
   bsm.yaw_rate_radps = 2.1;  // 120 deg/s, as in real payloads.
-  EXPECT_EQ(ToClaim(bsm, 0.1, EgoAtCrossroads(), {}).yaw_rate_radps, 0.0);
+  EXPECT_EQ(ToClaim(bsm, 0.1, {}).yaw_rate_radps, 0.0);
   bsm.speed_mps = 40.0;
   bsm.yaw_rate_radps = 0.5;
-  EXPECT_EQ(ToClaim(bsm, 0.1, EgoAtCrossroads(), {}).yaw_rate_radps, 0.0);
+  EXPECT_EQ(ToClaim(bsm, 0.1, {}).yaw_rate_radps, 0.0);
 }
 
 TEST(IsOwnEcho, IsOurPlaceSpeedAndCourse) {
@@ -136,7 +137,7 @@ TEST(IsOwnEcho, IsOurPlaceSpeedAndCourse) {
     car.north_m = north;
     car.yaw_rad = yaw;
     car.speed_mps = speed;
-    return IsOwnEcho(ToClaim(car.Say(), 0.3, ego, {}), ego, {});
+    return IsOwnEcho(ToClaim(car.Say(), 0.3, {}), ego, {});
   };
   EXPECT_TRUE(is_echo(-3.0, 0.3, 0.05, 10.2));      // Where we were 0.3 s ago.
   EXPECT_FALSE(is_echo(-8.0, 0.0, 0.0, 10.0));      // The one behind us.

@@ -10,7 +10,7 @@
 namespace v2vouch {
 namespace {
 
-Claim ClaimOf(const Bsm& bsm) { return ToClaim(bsm, ClaimedAge(bsm, {}), EgoAtCrossroads(), {}); }
+Claim ClaimOf(const Bsm& bsm) { return ToClaim(bsm, ClaimedAge(bsm, {}), {}); }
 
 Eigen::Vector3d InTown(const Eigen::Vector3d& p_E) {
   return LocalPlane(kCrossroads).ToLocal(EcefPoint{p_E}).p_L;
