@@ -79,13 +79,13 @@ void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise
   state.covariance(ExtendedState::kWidth, ExtendedState::kWidth) += 0.1 * kSizePsd * dt_s;
 }
 
-bool UpdateExtended(const Linearized& measurement, ExtendedState& state) {
+bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool learns_size) {
   Eigen::Matrix<double, Eigen::Dynamic, ExtendedState::kSize, 0, Linearized::kMaxRows,
                 ExtendedState::kSize>
       H(measurement.y.size(), ExtendedState::kSize);
   H << measurement.H, measurement.E;
   if (!JosephUpdate<ExtendedState::kSize>(measurement.y, H, measurement.R, state.mean,
-                                          state.covariance)) {
+                                          state.covariance, learns_size ? 0 : 2)) {
     return false;
   }
   Clamp(state);
@@ -157,7 +157,10 @@ std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoSta
   // Chance that at least one of the returns came from each face.
   const double front = std::max(ca - 0.5 * length / range, 0.0) * width;
   const double side = std::max(sa - 0.5 * width / range, 0.0) * length;
-  if (!(front + side > 1e-6)) return std::nullopt;
+  // A side seen at a grazing angle gives few returns, and those near its end: its span is no
+  // length.
+  constexpr double kMinSideShare = 0.5;
+  if (!(side > kMinSideShare * (front + side))) return std::nullopt;
   const double sees_front = 1.0 - std::pow(side / (front + side), n);
   const double sees_side = 1.0 - std::pow(front / (front + side), n);
 
@@ -180,9 +183,9 @@ std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoSta
   out.y[0] = measurement.radial_extent_m - std::sqrt(cover * cover * radial * radial + range_noise);
   out.y[1] = span - std::sqrt(cover * cover * across * across + azimuth_noise);
   out.R.setZero(2, 2);
-  // A tenth of the span for what the model leaves out: not every part of a body reflects.
-  out.R(0, 0) = (scatter + 0.01) * radial * radial + range_noise;
-  out.R(1, 1) = (scatter + 0.01) * across * across + azimuth_noise;
+  // A seventh of the span for what the model leaves out: not every part of a body reflects.
+  out.R(0, 0) = (scatter + 0.02) * radial * radial + range_noise;
+  out.R(1, 1) = (scatter + 0.02) * across * across + azimuth_noise;
   if (!std::isfinite(out.y.sum())) return std::nullopt;
   return out;
 }

@@ -39,8 +39,11 @@ void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise
 
 /// Joint Joseph update of motion and size. Length and width are kept within what drives on roads
 /// (0.3 to 25 m, 0.3 to 4 m), yaw is wrapped.
+/// @param learns_size false: the size is only considered. A radar's mean reflection depends on the
+///   length through which faces are seen; small errors of that model, the same in every scan, would
+///   pass for knowledge of the length.
 /// @return false on numerical failure; state untouched.
-bool UpdateExtended(const Linearized& measurement, ExtendedState& state);
+bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool learns_size = true);
 std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
                                            const ExtendedState& state);
 

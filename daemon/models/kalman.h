@@ -14,17 +14,22 @@ namespace v2vouch {
 ///
 ///     S = H P H' + R,  K = P H' S^-1,  mean += K y,  P = (I - K H) P (I - K H)' + K R K'
 ///
+/// @param considered this many states at the end keep their mean (Schmidt: their uncertainty
+/// counts, but
+///   the measurement may not teach them).
 /// @return false when S is not positive definite or the result is not finite; nothing is changed.
 template <int N, class Vector, class Jacobian, class Covariance>
 bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
-                  Eigen::Matrix<double, N, 1>& mean, Eigen::Matrix<double, N, N>& P) {
+                  Eigen::Matrix<double, N, 1>& mean, Eigen::Matrix<double, N, N>& P,
+                  int considered = 0) {
   using Gain = Eigen::Matrix<double, N, Eigen::Dynamic, 0, N, Linearized::kMaxRows>;
   const Gain PHt = P * H.transpose();
   Linearized::Covariance S = H * PHt + R;
   S = (0.5 * (S + S.transpose())).eval();
   const Eigen::LLT<Linearized::Covariance> llt(S);
   if (llt.info() != Eigen::Success) return false;
-  const Gain K = llt.solve(PHt.transpose()).transpose();
+  Gain K = llt.solve(PHt.transpose()).transpose();
+  K.bottomRows(considered).setZero();
   const Eigen::Matrix<double, N, 1> next = mean + K * y;
   Eigen::Matrix<double, N, N> A = Eigen::Matrix<double, N, N>::Identity();
   A.noalias() -= K * H;

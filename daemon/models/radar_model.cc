@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMinRange_m = 0.1;
 // Smoothing of the faces' weights and of their signs, as sine of the aspect.
-constexpr double kFaceBlur = 0.02;
+constexpr double kFaceBlur = 0.01;
 // Extents below this are a point.
 constexpr double kPoint_m = 1e-3;
 // Share of the reflections' spread that more reflections do not remove: scatterers sit where the

@@ -1,87 +1,150 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
+#include "daemon/assignment/assignment.h"
 #include "daemon/base/reason.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/track.h"
 #include "daemon/data/vehicle.h"
 #include "daemon/models/ctra.h"
+#include "daemon/tracking/candidates.h"
+#include "daemon/tracking/existence.h"
+#include "daemon/tracking/track_filter.h"
 
 namespace v2vouch {
 
 /// Settings of LOCAL fusion (DESIGN 5.4).
 struct TrackerConfig {
   MotionNoise motion;
-  double gate_probability = 0.9999;      ///< Of the chi-square gate.
-  double birth_per_m2_s = 2e-6;          ///< Density of new vehicles.
-  double confirm_existence = 0.95;       ///< Published from here on ...
-  double keep_existence = 0.5;           ///< ... until it falls below this.
-  double delete_existence = 0.01;
-  double survival_per_s = 0.995;         ///< Probability to still be there after one second.
-  double hidden_hold_s = 3.0;            ///< A hidden track is kept at most this long without a hit.
-  double max_position_sigma_m = 5.0;     ///< A less certain track is dropped.
+  bool point_targets = false;          ///< Detections are of the centre: no extent model.
+  double gate_probability = 0.9999;    ///< Of the chi-square gate.
+  double birth_per_m2_s = 2e-6;        ///< Density of new vehicles.
+  double confirm_existence = 0.95;     ///< Published from here on ...
+  double keep_existence = 0.5;         ///< ... until it falls below this.
+  double delete_existence = 0.01;      ///< Once published, dropped below this.
+  int confirm_hits = 3;                ///< Looks that saw it, all sensors, before it is published.
+  double survival_per_s = 0.999;       ///< Probability to still be there after one second.
+  double hidden_hold_s = 3.0;          ///< A hidden track is kept at most this long without a hit.
+  double max_position_sigma_m = 5.0;   ///< A track that coasts and is less certain is dropped.
+  double camera_birth_range_m = 60.0;  ///< A box alone starts a track only within this.
   int max_tracks = 512;
 
   template <class Archive>
   void Visit(Archive& a) {
     a.Field("motion", motion);
+    a.Field("point_targets", point_targets);
     a.Field("gate_probability", gate_probability, {.above = 0.5, .below = 1.0});
     a.Field("birth_per_m2_s", birth_per_m2_s, {.above = 0.0, .at_most = 1.0});
     a.Field("confirm_existence", confirm_existence, {.above = 0.0, .below = 1.0});
     a.Field("keep_existence", keep_existence, {.above = 0.0, .below = 1.0});
     a.Field("delete_existence", delete_existence, {.above = 0.0, .below = 1.0});
+    a.Field("confirm_hits", confirm_hits, {.at_least = 1, .at_most = 100});
     a.Field("survival_per_s", survival_per_s, {.above = 0.0, .at_most = 1.0});
     a.Field("hidden_hold_s", hidden_hold_s, {.above = 0.0, .at_most = 30.0});
     a.Field("max_position_sigma_m", max_position_sigma_m, {.above = 0.1, .at_most = 100.0});
+    a.Field("camera_birth_range_m", camera_birth_range_m, {.at_least = 0.0, .at_most = 200.0});
     a.Field("max_tracks", max_tracks, {.at_least = 1, .at_most = 4096});
   }
 };
 
-/// How likely each sensor is to detect a track at this moment, from visibility: value in [0, 1]
-/// and what hides it. Asked once per track and frame.
+/// How likely one sensor is to detect a track at this moment, from visibility, in [0, 1], and how
+/// the sensors together see it (VisibilityMap::Overall), which the track shows. Asked once per
+/// track and frame.
 struct Detectability {
   double probability = 0.0;
   Visibility visibility = Visibility::kVisible;
 };
 using DetectabilityOf = std::function<Detectability(const LocalTrack&)>;
 
-/// Multi-target tracker: Bernoulli existence per track, CTRA EKF in O, association by
-/// log-likelihood ratio with exact assignment in gated clusters, birth from what is left.
-/// Copyable: a copy is a checkpoint. Same inputs, same bits.
+/// Multi-target tracker: Bernoulli existence per track, EKF in O (TrackFilter), association by
+/// log-likelihood ratio with exact assignment in gated clusters, existence from marginals, birth
+/// from what is left. Copyable: a copy is a checkpoint. Same inputs, same bits.
+///
+/// - A moving radar cluster starts a track, a camera box within camera_birth_range_m too. A
+/// standing
+///   cluster starts none; it keeps alive what a camera named or what was seen moving.
+/// - A further cluster inside a tracked vehicle's footprint with its Doppler belongs to that
+/// vehicle:
+///   it joins the measurement and starts nothing.
+/// - Two tracks on one footprint with one velocity are one vehicle: the younger goes.
 class Tracker {
  public:
   Tracker(const TrackerConfig& config, const VehicleConfig& vehicle);
 
-  /// Brings every track to `stamp` (>= the last one) and drops those that have ended.
+  /// Brings every track to `stamp` (>= the last one) and drops those that have ended: hidden for
+  /// longer than hidden_hold_s, too uncertain, or no longer finite.
   void Predict(Timestamp stamp);
 
-  /// One radar scan: associate, update, start. `detectability` answers for this radar.
+  /// One radar scan: associate, update, start. `detectability` answers for this radar. Measurements
+  /// that are not finite are skipped.
   void UpdateRadar(int radar, const EgoState& ego, std::span<const RadarMeasurement> measurements,
                    const DetectabilityOf& detectability);
 
-  /// One picture. A box alone may start a track only within 60 m.
+  /// One picture.
   void UpdateCamera(int camera, const EgoState& ego,
                     std::span<const CameraMeasurement> measurements,
                     const DetectabilityOf& detectability);
 
   /// All tracks, unconfirmed ones included, ordered by id.
   [[nodiscard]] std::span<const LocalTrack> tracks() const { return tracks_; }
-  /// Which measurement each track was given by the last update.
+  /// Which measurement each track was given by the last update; clusters of one vehicle as one.
   [[nodiscard]] std::span<const SensorUpdate> updates() const { return updates_; }
-  /// Numerical failures and overflow since the last call.
+  /// Numerical failures and overflow since the last Predict.
   [[nodiscard]] std::span<const Reason> failures() const { return failures_; }
 
+  /// Identity of a track: time, sensor (radars 0-7, cameras 8-15) and index of what started it.
+  static std::uint64_t PackId(Timestamp stamp, int sensor, int index);
+
  private:
+  struct Hidden {  // What the rest of the program need not see of a track.
+    TrackFilter filter;
+    Timestamp last_hit{};
+    double overlap_s = 0.0;  // How long an older track has been in the same place.
+    std::array<double, 8> class_votes{};
+    bool is_dead = false;
+  };
+  template <class Look, class Measurement>
+  void GatePair(std::size_t track, std::size_t measurement, const Look& look, const Measurement& z);
+  void PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements);
+  void PrepareCamera(const CameraLook& look, std::span<const CameraMeasurement> measurements);
+  void AskDetectability(const DetectabilityOf& detectability);
+  void Associate(std::size_t measurements);
+  void AbsorbClusters(const RadarLook& look, std::span<const RadarMeasurement> measurements);
+  bool Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,
+            const Eigen::Vector2d& p_O) const;
+  bool Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z) const;
+  void Hit(std::size_t track);
+  void Vote(std::size_t track, const CameraMeasurement& z);
+  void Start(const TrackFilter& filter, int sensor, std::size_t index, double existence);
+  void DropDuplicates(double dt_s);
+  void Conclude(double dt_s);
+  void RemoveDead();
+
   TrackerConfig config_;
   VehicleConfig vehicle_;
+  FilterSettings settings_;
+  std::array<double, Linearized::kMaxRows + 1> gate_{};
+  Timestamp now_{};
+  double since_update_s_ = 0.0;
   std::vector<LocalTrack> tracks_;
+  std::vector<Hidden> hidden_;
   std::vector<SensorUpdate> updates_;
   std::vector<Reason> failures_;
+
+  // Scratch of one update, kept for its memory.
+  Candidates candidates_;
+  std::vector<double> detection_, missed_, lone_;
+  std::vector<SparsePair> costs_;
+  std::vector<GatedPair> pairs_;
+  std::vector<int> by_x_, assigned_, owner_;
+  ClusteredAssignmentSolver solver_;
+  AssociationMarginals marginals_;
 };
 
 }  // namespace v2vouch

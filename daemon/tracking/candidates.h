@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace v2vouch {
+
+/// What association knows about one measurement before it meets a track.
+struct Candidate {
+  Eigen::Vector2d p_O = Eigen::Vector2d::Zero();
+  double reach_m = 0.0;          ///< Coarse gate of the measurement alone.
+  double log_density = 0.0;      ///< ln of clutter and births per unit of the measurement's space.
+  double birth_existence = 0.0;  ///< Of a track it would start.
+  bool may_start = false;
+};
+
+/// The candidates of one look, searchable by place: sorted by x, so that a track meets only those
+/// in its strip.
+class Candidates {
+ public:
+  void Clear() { all_.clear(); }
+  void Add(const Candidate& candidate) { all_.push_back(candidate); }
+  [[nodiscard]] std::size_t size() const { return all_.size(); }
+  Candidate& operator[](std::size_t j) { return all_[j]; }
+  const Candidate& operator[](std::size_t j) const { return all_[j]; }
+
+  /// To be called after the last Add, before ForEachNear.
+  void Sort() {
+    widest_m_ = 0.0;
+    by_x_.clear();
+    for (std::size_t j = 0; j < all_.size(); ++j) {
+      by_x_.push_back(j);
+      widest_m_ = std::max(widest_m_, all_[j].reach_m);
+    }
+    std::sort(by_x_.begin(), by_x_.end(), [this](std::size_t a, std::size_t b) {
+      const double xa = all_[a].p_O.x();
+      const double xb = all_[b].p_O.x();
+      return xa != xb ? xa < xb : a < b;
+    });
+  }
+
+  /// Calls visit(j) for every candidate whose own reach and `reach_m` together bridge the distance
+  /// to `p_O`.
+  template <class Visitor>
+  void ForEachNear(const Eigen::Vector2d& p_O, double reach_m, Visitor&& visit) const {
+    const double strip_m = reach_m + widest_m_;
+    auto it = std::lower_bound(by_x_.begin(), by_x_.end(), p_O.x() - strip_m,
+                               [this](std::size_t j, double x) { return all_[j].p_O.x() < x; });
+    for (; it != by_x_.end() && all_[*it].p_O.x() <= p_O.x() + strip_m; ++it) {
+      const double reach = reach_m + all_[*it].reach_m;
+      if ((all_[*it].p_O - p_O).squaredNorm() <= reach * reach) visit(*it);
+    }
+  }
+
+ private:
+  std::vector<Candidate> all_;
+  std::vector<std::size_t> by_x_;
+  double widest_m_ = 0.0;
+};
+
+}  // namespace v2vouch

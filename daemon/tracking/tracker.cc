@@ -1,0 +1,449 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tracking/tracker.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "daemon/base/angle.h"
+#include "daemon/tracking/chi_square.h"
+#include "daemon/tracking/cluster_owner.h"
+
+namespace v2vouch {
+namespace {
+
+const double kLog2Pi = std::log(2.0 * kPi);
+// Range rates of clutter spread over this much [m/s]: +-30.
+constexpr double kDopplerSpan_mps = 60.0;
+// Standing returns share a narrow band of ground range rate.
+constexpr double kStaticDopplerSpan_mps = 1.2;
+// Clutter of a camera: boxes anywhere in the picture, width and depression spread over these.
+constexpr double kBoxWidthSpan_rad = 0.3;
+constexpr double kDepressionSpan_rad = 0.2;
+// A new track is never nearly certain, and never so unlikely that it cannot be confirmed.
+constexpr double kMinBirth = 1e-4;
+constexpr double kMaxBirth = 0.3;
+// Unpublished tracks go below this.
+constexpr double kForget = 1e-5;
+// For the choice of an assignment a young track counts at least this much, so that its second look
+// reaches it and does not start a third track beside it. Existence itself uses the true value.
+constexpr double kAssignmentExistence = 0.05;
+// A track just outside of a sensor's view may still be seen by it.
+constexpr double kMinDetection = 0.02;
+constexpr double kSureExistence = 0.999999;
+// Standard deviations of the coarse gate; the chi-square gate decides.
+constexpr double kCoarseSigmas = 4.7;
+// Before size is known well, the next vehicle's centre is at least this far away.
+constexpr double kDuplicateHold_s = 0.3;
+constexpr double kCoastingSince_s = 0.5;
+
+double LargestSigma(const Eigen::Matrix2d& P) {
+  const double mean = 0.5 * (P(0, 0) + P(1, 1));
+  const double half = 0.5 * (P(0, 0) - P(1, 1));
+  return std::sqrt(std::max(mean + std::sqrt(half * half + P(0, 1) * P(0, 1)), 0.0));
+}
+
+bool IsFinite(const RadarMeasurement& z) {
+  return std::isfinite(z.range_m) && std::isfinite(z.azimuth_rad) &&
+         std::isfinite(z.range_rate_mps) && z.covariance.allFinite() && z.range_m > 0.0;
+}
+
+bool IsFinite(const CameraMeasurement& z) {
+  return std::isfinite(z.azimuth_left_rad) && std::isfinite(z.azimuth_right_rad) &&
+         std::isfinite(z.depression_rad) && std::isfinite(z.azimuth_sigma_rad) &&
+         std::isfinite(z.depression_sigma_rad);
+}
+
+double BirthExistence(double births, double clutter) {
+  return std::clamp(births / (births + clutter), kMinBirth, kMaxBirth);
+}
+
+}  // namespace
+
+std::uint64_t Tracker::PackId(Timestamp stamp, int sensor, int index) {
+  return static_cast<std::uint64_t>(ToMicros(stamp)) << 12 |
+         (static_cast<std::uint64_t>(sensor) & 15U) << 8 |
+         (static_cast<std::uint64_t>(index) & 255U);
+}
+
+Tracker::Tracker(const TrackerConfig& config, const VehicleConfig& vehicle)
+    : config_(config), vehicle_(vehicle), settings_{config.motion, config.point_targets} {
+  for (int rows = 1; rows <= Linearized::kMaxRows; ++rows) {
+    gate_[static_cast<std::size_t>(rows)] = ChiSquareQuantile(config.gate_probability, rows);
+  }
+}
+
+void Tracker::Predict(Timestamp stamp) {
+  failures_.clear();
+  const double dt_s = tracks_.empty() ? 0.0 : std::max(0.0, ToSeconds(stamp - now_));
+  now_ = stamp;
+  since_update_s_ += dt_s;
+  const double survival = std::pow(config_.survival_per_s, dt_s);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    Hidden& hidden = hidden_[i];
+    LocalTrack& track = tracks_[i];
+    hidden.filter.Predict(dt_s, settings_);
+    hidden.filter.Show(settings_, track);
+    track.existence *= survival;
+    const double sigma_m = LargestSigma(hidden.filter.position_covariance());
+    if (!track.state_O.mean.allFinite() || !track.state_O.covariance.allFinite() ||
+        !std::isfinite(sigma_m)) {
+      failures_.push_back(Reason::kTrackNumerics);
+      hidden.is_dead = true;
+      continue;
+    }
+    const double silent_s = ToSeconds(now_ - hidden.last_hit);
+    if (track.visibility != Visibility::kVisible && silent_s > config_.hidden_hold_s) {
+      hidden.is_dead = true;
+    }
+    if (silent_s > kCoastingSince_s && sigma_m > config_.max_position_sigma_m) {
+      hidden.is_dead = true;
+    }
+  }
+  RemoveDead();
+}
+
+void Tracker::AskDetectability(const DetectabilityOf& detectability) {
+  detection_.resize(tracks_.size());
+  missed_.resize(tracks_.size());
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const Detectability answer = detectability(tracks_[i]);
+    detection_[i] = std::clamp(answer.probability, 0.0, 0.999);
+    tracks_[i].visibility = answer.visibility;
+    missed_[i] = 1.0 - tracks_[i].existence * detection_[i];
+  }
+}
+
+template <class Look, class Measurement>
+void Tracker::GatePair(std::size_t track, std::size_t measurement, const Look& look,
+                       const Measurement& z) {
+  const auto likelihood = hidden_[track].filter.Evaluate(look, z, settings_);
+  if (!likelihood) return;
+  if (likelihood->distance_squared > gate_[static_cast<std::size_t>(likelihood->rows)]) return;
+  const double log_likelihood =
+      -0.5 * (likelihood->distance_squared + likelihood->log_det + likelihood->rows * kLog2Pi);
+  const double detection = std::max(detection_[track], kMinDetection);
+  const double log_ratio =
+      log_likelihood + std::log(detection) - candidates_[measurement].log_density;
+  const double existence = tracks_[track].existence;
+  const double counted = std::max(existence, kAssignmentExistence);
+  // Cost against leaving the track alone and calling the measurement clutter or a newcomer.
+  const double cost = -(log_ratio + std::log(counted) - std::log(1.0 - counted * detection));
+  const int row = static_cast<int>(track);
+  const int column = static_cast<int>(measurement);
+  costs_.push_back({row, column, cost});
+  pairs_.push_back({row, column, existence * std::exp(std::min(log_ratio, 200.0))});
+}
+
+void Tracker::Associate(std::size_t measurements) {
+  lone_.assign(tracks_.size(), 0.0);
+  const auto best = solver_.Solve(costs_, tracks_.size(), measurements, lone_);
+  assigned_.assign(best.begin(), best.end());
+  marginals_.Compute(pairs_, missed_, assigned_, measurements);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const double seen = marginals_.detected()[i];
+    const double unseen = ExistenceAfterMiss(tracks_[i].existence, detection_[i]);
+    tracks_[i].existence = std::min(seen + (1.0 - seen) * unseen, kSureExistence);
+  }
+}
+
+void Tracker::PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements) {
+  const RadarConfig& radar = look.radar;
+  const double cells = (radar.max_range_m - radar.min_range_m) * 2.0 * radar.half_fov_rad;
+  const double births = config_.birth_per_m2_s * radar.period_s * radar.half_fov_rad *
+                        radar.max_range_m * radar.max_range_m;
+  const double birth_existence = BirthExistence(births, radar.clutter_per_scan);
+  double standing = 1.0;
+  for (const RadarMeasurement& z : measurements) standing += z.is_static ? 1.0 : 0.0;
+  const double moving_density = radar.clutter_per_scan / (cells * kDopplerSpan_mps);
+  const double static_density = standing / (cells * kStaticDopplerSpan_mps);
+
+  candidates_.Clear();
+  for (const RadarMeasurement& z : measurements) {
+    Candidate candidate;
+    if (IsFinite(z)) {
+      const Fix fix = FixOf(look, z);
+      candidate.p_O = fix.p_O;
+      candidate.reach_m = kCoarseSigmas * LargestSigma(fix.covariance) + 1.0;
+      candidate.may_start = !z.is_static;
+    } else {
+      candidate.p_O.setConstant(std::numeric_limits<double>::max() / 4.0);
+    }
+    candidate.birth_existence = birth_existence;
+    candidate.log_density =
+        std::log((z.is_static ? static_density : moving_density) / (1.0 - birth_existence));
+    candidates_.Add(candidate);
+  }
+  candidates_.Sort();
+}
+
+void Tracker::UpdateRadar(int radar, const EgoState& ego,
+                          std::span<const RadarMeasurement> measurements,
+                          const DetectabilityOf& detectability) {
+  const RadarLook look{ego, vehicle_.radars[static_cast<std::size_t>(radar)]};
+  updates_.clear();
+  costs_.clear();
+  pairs_.clear();
+  PrepareRadar(look, measurements);
+  AskDetectability(detectability);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const double reach_m = kCoarseSigmas * LargestSigma(hidden_[i].filter.position_covariance()) +
+                           0.7 * tracks_[i].extent.length_m;
+    candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m,
+                            [&](std::size_t j) { GatePair(i, j, look, measurements[j]); });
+  }
+  Associate(measurements.size());
+  AbsorbClusters(look, measurements);
+
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (assigned_[i] < 0) continue;
+    RadarMeasurement z = measurements[static_cast<std::size_t>(assigned_[i])];
+    for (std::size_t j = 0; j < measurements.size(); ++j) {
+      if (owner_[j] == static_cast<int>(i)) z = JoinClusters(z, measurements[j]);
+    }
+    if (!hidden_[i].filter.Update(look, z, settings_)) {
+      failures_.push_back(Reason::kTrackNumerics);
+      hidden_[i].is_dead = true;
+      continue;
+    }
+    Hit(i);
+    tracks_[i].last_radar = now_;
+    ++tracks_[i].radar_hits;
+    updates_.push_back({tracks_[i].id, z});
+  }
+  const std::size_t known = tracks_.size();
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    if (!candidates_[j].may_start || owner_[j] >= 0) continue;
+    // The first cluster of a newcomer swallows the others of the same scan.
+    bool is_taken = false;
+    for (std::size_t i = known; i < tracks_.size() && !is_taken; ++i) {
+      is_taken = Owns(i, look, measurements[j], candidates_[j].p_O);
+    }
+    if (is_taken) continue;
+    Start(TrackFilter::FromRadar(look, measurements[j]), radar, j,
+          candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]));
+    if (tracks_.size() > known && hidden_.back().last_hit == now_) {
+      tracks_.back().last_radar = now_;
+      tracks_.back().radar_hits = 1;
+      updates_.push_back({tracks_.back().id, measurements[j]});
+    }
+  }
+  Conclude(since_update_s_);
+}
+
+void Tracker::PrepareCamera(const CameraLook& look,
+                            std::span<const CameraMeasurement> measurements) {
+  const CameraConfig& camera = look.camera;
+  const double half_fov_rad = std::atan2(0.5 * camera.image_width_px, camera.fx_px);
+  const double reach_m = config_.camera_birth_range_m;
+  const double births = config_.birth_per_m2_s * camera.period_s * half_fov_rad * reach_m * reach_m;
+  const double birth_existence = BirthExistence(births, camera.clutter_per_image);
+  candidates_.Clear();
+  for (const CameraMeasurement& z : measurements) {
+    Candidate candidate;
+    // The space of a box has as many dimensions as it has usable edges.
+    double cells = 1.0;
+    if (!z.left_is_cut || !z.right_is_cut) cells *= 2.0 * half_fov_rad;
+    if (!z.left_is_cut && !z.right_is_cut) cells *= kBoxWidthSpan_rad;
+    if (!z.bottom_is_cut) cells *= kDepressionSpan_rad;
+    candidate.birth_existence = birth_existence;
+    candidate.log_density = std::log(camera.clutter_per_image / cells / (1.0 - birth_existence));
+    candidate.may_start = IsFinite(z);
+    candidates_.Add(candidate);
+  }
+}
+
+void Tracker::UpdateCamera(int camera, const EgoState& ego,
+                           std::span<const CameraMeasurement> measurements,
+                           const DetectabilityOf& detectability) {
+  const CameraLook look{ego, vehicle_.cameras[static_cast<std::size_t>(camera)]};
+  updates_.clear();
+  costs_.clear();
+  pairs_.clear();
+  PrepareCamera(look, measurements);
+  AskDetectability(detectability);
+  const double axis = ego.X_OB.yaw_rad() + look.camera.yaw_rad;
+  const Eigen::Vector2d origin_O = look.origin_O();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const Eigen::Vector2d line = hidden_[i].filter.position_O() - origin_O;
+    const double reach_m = kCoarseSigmas * LargestSigma(hidden_[i].filter.position_covariance()) +
+                           0.7 * tracks_[i].extent.length_m;
+    const double range_m = line.norm();
+    const double reach_rad = reach_m < range_m ? std::asin(reach_m / range_m) : kPi;
+    const double bearing = std::atan2(line.y(), line.x()) - axis;
+    for (std::size_t j = 0; j < measurements.size(); ++j) {
+      const CameraMeasurement& z = measurements[j];
+      if (!candidates_[j].may_start) continue;
+      const double middle = 0.5 * (z.azimuth_left_rad + z.azimuth_right_rad);
+      const double half =
+          0.5 * (z.azimuth_left_rad - z.azimuth_right_rad) + kCoarseSigmas * z.azimuth_sigma_rad;
+      if (std::abs(WrapAngle(middle - bearing)) > reach_rad + half) continue;
+      GatePair(i, j, look, z);
+    }
+  }
+  Associate(measurements.size());
+
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (assigned_[i] < 0) continue;
+    const CameraMeasurement& z = measurements[static_cast<std::size_t>(assigned_[i])];
+    candidates_[static_cast<std::size_t>(assigned_[i])].may_start = false;
+    Vote(i, z);
+    if (!hidden_[i].filter.Update(look, z, settings_)) {
+      failures_.push_back(Reason::kTrackNumerics);
+      hidden_[i].is_dead = true;
+      continue;
+    }
+    Hit(i);
+    tracks_[i].last_camera = now_;
+    ++tracks_[i].camera_hits;
+    updates_.push_back({tracks_[i].id, z});
+  }
+  const std::size_t known = tracks_.size();
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    if (!candidates_[j].may_start) continue;
+    const CameraMeasurement& z = measurements[j];
+    const auto fix = FixOf(look, z);
+    if (!fix || (fix->p_O - origin_O).norm() > config_.camera_birth_range_m) continue;
+    bool is_covered = false;
+    for (std::size_t i = 0; i < known && !is_covered; ++i) is_covered = Covers(i, look, z);
+    if (is_covered) continue;
+    Start(TrackFilter::FromCamera(look, z, *fix), camera + 8, j,
+          candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]));
+    if (tracks_.size() > known && hidden_.back().last_hit == now_) {
+      Vote(tracks_.size() - 1, z);
+      tracks_.back().last_camera = now_;
+      tracks_.back().camera_hits = 1;
+      updates_.push_back({tracks_.back().id, z});
+    }
+  }
+  Conclude(since_update_s_);
+}
+
+void Tracker::Hit(std::size_t track) { hidden_[track].last_hit = now_; }
+
+void Tracker::Vote(std::size_t track, const CameraMeasurement& z) {
+  const auto named = static_cast<std::size_t>(z.object_class);
+  Hidden& hidden = hidden_[track];
+  if (named == 0 || named >= hidden.class_votes.size()) return;
+  hidden.class_votes[named] += std::max(z.score, 0.05);
+  const auto current = static_cast<std::size_t>(tracks_[track].object_class);
+  // A name changes only for one that is clearly better supported.
+  if (named != current && hidden.class_votes[named] > 1.5 * hidden.class_votes[current]) {
+    tracks_[track].object_class = z.object_class;
+    hidden.filter.SetClass(z.object_class);
+  }
+}
+
+void Tracker::Start(const TrackFilter& filter, int sensor, std::size_t index, double existence) {
+  const std::uint64_t id = PackId(now_, sensor, static_cast<int>(index));
+  // An index beyond what an id can hold starts nothing: no scan has 256 vehicles.
+  if (index > 255) return;
+  if (tracks_.size() >= static_cast<std::size_t>(config_.max_tracks)) {
+    failures_.push_back(Reason::kTrackTableFull);
+    return;
+  }
+  LocalTrack track;
+  track.id = id;
+  track.start = now_;
+  track.existence = std::max(existence, kMinBirth);
+  filter.Show(settings_, track);
+  Hidden hidden;
+  hidden.filter = filter;
+  hidden.last_hit = now_;
+  tracks_.push_back(track);
+  hidden_.push_back(hidden);
+}
+
+// Shows the new states, confirms, ends and puts in order.
+void Tracker::Conclude(double dt_s) {
+  since_update_s_ = 0.0;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    LocalTrack& track = tracks_[i];
+    Hidden& hidden = hidden_[i];
+    hidden.filter.Show(settings_, track);
+    if (!track.state_O.mean.allFinite() || !track.state_O.covariance.allFinite()) {
+      failures_.push_back(Reason::kTrackNumerics);
+      hidden.is_dead = true;
+      continue;
+    }
+    const int hits = track.radar_hits + track.camera_hits;
+    if (!track.is_confirmed && track.existence >= config_.confirm_existence &&
+        hits >= config_.confirm_hits &&
+        LargestSigma(hidden.filter.position_covariance()) <= config_.max_position_sigma_m) {
+      track.is_confirmed = true;
+    } else if (track.is_confirmed && track.existence < config_.keep_existence) {
+      track.is_confirmed = false;
+    }
+    const bool was_believed = hits >= config_.confirm_hits;
+    if (track.existence < (was_believed ? config_.delete_existence : kForget)) {
+      hidden.is_dead = true;
+    }
+  }
+  DropDuplicates(dt_s);
+  RemoveDead();
+  // Births come in order of their index; only two sensors with one stamp can need more than this.
+  for (std::size_t i = 1; i < tracks_.size(); ++i) {
+    for (std::size_t k = i; k > 0 && tracks_[k].id < tracks_[k - 1].id; --k) {
+      std::swap(tracks_[k], tracks_[k - 1]);
+      std::swap(hidden_[k], hidden_[k - 1]);
+    }
+  }
+}
+
+void Tracker::RemoveDead() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (hidden_[i].is_dead) continue;
+    if (kept != i) {
+      tracks_[kept] = tracks_[i];
+      hidden_[kept] = hidden_[i];
+    }
+    ++kept;
+  }
+  tracks_.resize(kept);
+  hidden_.resize(kept);
+}
+
+// Two vehicles cannot stand in one place: of two tracks with overlapping footprints and one
+// velocity the younger goes, at once while it is unpublished, after a while otherwise.
+void Tracker::DropDuplicates(double dt_s) {
+  by_x_.clear();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) by_x_.push_back(static_cast<int>(i));
+  const auto x_of = [this](int i) { return tracks_[static_cast<std::size_t>(i)].state_O.mean[kX]; };
+  std::sort(by_x_.begin(), by_x_.end(),
+            [&](int a, int b) { return x_of(a) != x_of(b) ? x_of(a) < x_of(b) : a < b; });
+  constexpr double kLongest_m = 25.0;
+  for (std::size_t a = 0; a < by_x_.size(); ++a) {
+    bool overlaps = false;
+    const auto i = static_cast<std::size_t>(by_x_[a]);
+    // Looks both ways from its own place for an older track.
+    for (const int direction : {-1, 1}) {
+      for (std::ptrdiff_t k = static_cast<std::ptrdiff_t>(a) + direction;
+           k >= 0 && k < static_cast<std::ptrdiff_t>(by_x_.size()); k += direction) {
+        const auto j = static_cast<std::size_t>(by_x_[static_cast<std::size_t>(k)]);
+        const LocalTrack& young = tracks_[i];
+        const LocalTrack& old = tracks_[j];
+        if (std::abs(old.state_O.mean[kX] - young.state_O.mean[kX]) > 0.5 * kLongest_m) break;
+        if (hidden_[j].is_dead) continue;
+        const bool is_senior =
+            old.is_confirmed != young.is_confirmed ? old.is_confirmed : old.id < young.id;
+        if (!is_senior) continue;
+        const Eigen::Vector2d between = Eigen::Rotation2D<double>(-old.state_O.mean[kYaw]) *
+                                        (young.state_O.mean.head<2>() - old.state_O.mean.head<2>());
+        const double half_length = 0.25 * (old.extent.length_m + young.extent.length_m);
+        const double half_width = 0.35 * (old.extent.width_m + young.extent.width_m);
+        if (std::abs(between.x()) > half_length || std::abs(between.y()) > half_width) continue;
+        const double difference =
+            (hidden_[i].filter.velocity_O() - hidden_[j].filter.velocity_O()).norm();
+        const double doubt = hidden_[i].filter.is_vehicle() ? 0.0 : 8.0;
+        if (difference < 3.0 + doubt) overlaps = true;
+      }
+    }
+    hidden_[i].overlap_s = overlaps ? hidden_[i].overlap_s + dt_s : 0.0;
+    const double hold_s = tracks_[i].is_confirmed ? kDuplicateHold_s : 0.1;
+    if (overlaps && hidden_[i].overlap_s > hold_s) hidden_[i].is_dead = true;
+  }
+}
+
+}  // namespace v2vouch
