@@ -15,6 +15,7 @@ namespace {
 constexpr double kMaxFrameAge_s = 0.5;  // Older tracks are not compared with anything.
 constexpr double kUnknownAccel_mps2 = 4.0;
 constexpr double kOwnMotionFloor_m = 2.0;
+constexpr double kSeen_s = 0.15;  // Co-observed means: a hit of the same moment, not of support's.
 constexpr double kHeirSpeed_mps = 2.0;
 constexpr double kHeirYaw_rad = FromDegrees(20.0);
 

@@ -7,14 +7,19 @@
 namespace v2vouch {
 namespace {
 
+// Share of the ego's own pose error that may come and go within ten seconds.
+constexpr double kAlignmentDrift = 0.3;
+// A good receiver's heading may be this far off for long (SAE J2945/1 asks for 2 degrees).
+constexpr double kHonestHeading_rad = FromDegrees(2.0);
+
 // How far a residual exceeds limits that are looser along track: 1 = at the limit.
 double Excess(const Eigen::Vector2d& residual_O, const CoObservation& now, double limit_m,
-              const TrustConfig& config) {
+              double alignment_share, const TrustConfig& config) {
   const double c = std::cos(now.track_yaw_rad);
   const double s = std::sin(now.track_yaw_rad);
   const double along_m = c * residual_O.x() + s * residual_O.y();
   const double across_m = -s * residual_O.x() + c * residual_O.y();
-  const double across_limit_m = limit_m + now.alignment_sigma_m;
+  const double across_limit_m = limit_m + alignment_share * now.alignment_sigma_m;
   const double along_limit_m =
       across_limit_m + config.stale_position_s * std::abs(now.track_speed_mps);
   return std::hypot(along_m / along_limit_m, across_m / across_limit_m);
@@ -22,11 +27,11 @@ double Excess(const Eigen::Vector2d& residual_O, const CoObservation& now, doubl
 
 std::optional<Finding> JudgeResidual(std::string_view check, const Eigen::Vector2d& residual_O,
                                      const CoObservation& now, double withdraw_m, double accuse_m,
-                                     const TrustConfig& config) {
-  if (Excess(residual_O, now, accuse_m, config) > 1.0) {
+                                     double alignment_share, const TrustConfig& config) {
+  if (Excess(residual_O, now, accuse_m, alignment_share, config) > 1.0) {
     return Finding{check, Verdict::kAccuse, "residual_m", residual_O.norm(), accuse_m};
   }
-  if (Excess(residual_O, now, withdraw_m, config) > 1.0) {
+  if (Excess(residual_O, now, withdraw_m, alignment_share, config) > 1.0) {
     return Finding{check, Verdict::kWithdraw, "residual_m", residual_O.norm(), withdraw_m};
   }
   return std::nullopt;
@@ -72,7 +77,7 @@ std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObserv
                                   const TrustConfig& config) {
   if (!history.is_settled()) return std::nullopt;
   return JudgeResidual("residual_level", history.mean_O(), now, config.level_withdraw_m,
-                       config.level_accuse_m, config);
+                       config.level_accuse_m, 1.0, config);
 }
 
 std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObservation& now,
@@ -80,21 +85,30 @@ std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObserv
   const auto reference_O = history.reference_O();
   if (!reference_O) return std::nullopt;
   return JudgeResidual("residual_drift", history.mean_O() - *reference_O, now,
-                       config.drift_withdraw_m, config.drift_accuse_m, config);
+                       config.drift_withdraw_m, config.drift_accuse_m, kAlignmentDrift, config);
 }
 
 std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObservation& now,
                                      const TrustConfig& config) {
   if (!history.is_settled()) return std::nullopt;
-  const double speed_mps = std::abs(history.speed_mps());
-  const double slack_mps = 2.0 * history.speed_sigma_mps();
-  if (speed_mps > config.speed_accuse_mps + slack_mps) {
-    return Finding{"speed_residual", Verdict::kAccuse, "speed_residual_mps", speed_mps,
-                   config.speed_accuse_mps + slack_mps};
+  // Both components of the velocity: a car that slides sideways out of its lane keeps its speed.
+  const double track_mps = std::abs(now.track_speed_mps);
+  const double along_mps = history.speed_mps();
+  const double along_slack_mps = 2.0 * history.speed_sigma_mps();
+  const double across_mps = history.has_yaw() ? track_mps * std::sin(history.yaw_rad()) : 0.0;
+  const double across_slack_mps = track_mps * (2.0 * history.yaw_sigma_rad() + kHonestHeading_rad);
+  const auto exceeds = [&](double limit_mps) {
+    return std::hypot(along_mps / (limit_mps + along_slack_mps),
+                      across_mps / (limit_mps + across_slack_mps)) > 1.0;
+  };
+  const double residual_mps = std::hypot(along_mps, across_mps);
+  if (exceeds(config.speed_accuse_mps)) {
+    return Finding{"velocity_residual", Verdict::kAccuse, "velocity_residual_mps", residual_mps,
+                   config.speed_accuse_mps};
   }
-  if (speed_mps > config.speed_withdraw_mps + slack_mps) {
-    return Finding{"speed_residual", Verdict::kWithdraw, "speed_residual_mps", speed_mps,
-                   config.speed_withdraw_mps + slack_mps};
+  if (exceeds(config.speed_withdraw_mps)) {
+    return Finding{"velocity_residual", Verdict::kWithdraw, "velocity_residual_mps", residual_mps,
+                   config.speed_withdraw_mps};
   }
   if (!history.has_yaw() || std::abs(now.track_speed_mps) < config.heading_min_speed_mps) {
     return std::nullopt;

@@ -72,7 +72,9 @@ std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObserv
 /// C9: its drift against ten seconds ago.
 std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config);
-/// C10: claimed against sensed speed and direction; limits grow by twice the sensors' own sigma.
+/// C10: claimed against sensed velocity (along and across the vehicle's direction) and direction;
+/// limits grow by twice the sensors' own sigma, across also by an honest heading error of 2
+/// degrees.
 std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObservation& now,
                                      const TrustConfig& config);
 /// C5: a sender's displacement between two messages against its own claimed motion.

@@ -18,7 +18,7 @@ struct TrustConfig {
   double drift_withdraw_m = 3.0;  ///< C9: its change over 10 s, or since validation.
   double drift_accuse_m = 4.0;
   double stale_position_s = 0.15;   ///< C8, C9: along-track limits grow by this times speed.
-  double speed_withdraw_mps = 1.0;  ///< C10: claimed against sensed speed.
+  double speed_withdraw_mps = 1.0;  ///< C10: claimed against sensed velocity.
   double speed_accuse_mps = 2.0;
   double heading_withdraw_rad = FromDegrees(15.0);  ///< C10, above heading_min_speed_mps.
   double heading_accuse_rad = FromDegrees(30.0);

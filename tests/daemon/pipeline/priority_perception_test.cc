@@ -1,0 +1,556 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/pipeline/priority_perception.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "daemon/base/random.h"
+#include "daemon/models/measurement_model.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr double kFrame_s = 0.05;
+const Wgs84 kHome{FromDegrees(52.4), FromDegrees(13.05), 60.0};
+
+struct Car {
+  std::uint64_t local_id = 0;
+  Eigen::Vector2d p = Eigen::Vector2d::Zero();
+  double yaw_rad = 0.0;
+  double speed_mps = 0.0;
+  bool is_seen = true;
+  // What a tracker would know of it.
+  Timestamp start{};
+  int radar_hits = 0;
+  int camera_hits = 0;
+  std::optional<Timestamp> last_radar{}, last_camera{};
+};
+
+// An ego that stands at the origin of L and O looking east, with made-up LOCAL tracks (truth plus
+// 0.1 m of noise) and claims. Everything behind x = 15 m is hidden while `has_wall`.
+class Scene {
+ public:
+  explicit Scene(std::uint64_t seed = 1, PriorityConfig config = {})
+      : random(seed),
+        perception(config, AlignmentConfig{}, vehicle),
+        map(VisibilityConfig{}, vehicle) {
+    for (int i = 0; i < 20; ++i) Fix();
+  }
+
+  void Fix(const Eigen::Vector2d& jump = Eigen::Vector2d::Zero()) {
+    GnssFix fix;
+    fix.stamp = now;
+    fix.position = plane.ToGeodetic(
+        LocalPoint{{vehicle.antenna_x_m + jump.x(), vehicle.antenna_y_m + jump.y(), 0.0}});
+    fix.covariance_enu = Eigen::Vector3d(0.04, 0.04, 0.1).asDiagonal();
+    fix.yaw_rad = 0.0;
+    fix.yaw_sigma_rad = 0.003;
+    fix.velocity_en_mps = Eigen::Vector2d::Zero();
+    fix.velocity_sigma_mps = 0.05;
+    fix.fix_type = FixType::k3d;
+    EgoState at_fix = Ego();
+    perception.OnFix(fix, at_fix, outputs);
+    now += FromSeconds(0.001);
+  }
+
+  [[nodiscard]] EgoState Ego() const {
+    EgoState ego;
+    ego.stamp = now;
+    return ego;
+  }
+
+  void Move(double dt_s) {
+    for (Car& car : cars) {
+      car.p += dt_s * car.speed_mps * Eigen::Vector2d(std::cos(car.yaw_rad), std::sin(car.yaw_rad));
+    }
+    now += FromSeconds(dt_s);
+    ++frames;
+  }
+
+  void Frame() {
+    LocalFrame frame;
+    frame.stamp = now;
+    frame.ego = Ego();
+    frame.sectors = {{-kPi, 0.0, 200.0, SectorState::kWatched},
+                     {0.0, kPi, 200.0, SectorState::kWatched}};
+    std::vector<Occluder> occluders;
+    if (has_wall) {
+      occluders.push_back(
+          {.id = 1, .centre_O = {15.0, 0.0}, .yaw_rad = 0.5 * kPi, .length_m = 120.0});
+    }
+    for (Car& car : cars) {
+      if (!car.is_seen) continue;
+      if (car.radar_hits == 0) car.start = now;
+      ++car.radar_hits;
+      car.last_radar = now;
+      if (frames % 2 == 0) {
+        ++car.camera_hits;
+        car.last_camera = now;
+      }
+      LocalTrack track;
+      track.id = car.local_id;
+      track.start = car.start;
+      track.state_O.mean << car.p.x() + random.Normal(0.0, 0.1),
+          car.p.y() + random.Normal(0.0, 0.1), car.yaw_rad + random.Normal(0.0, 0.01),
+          car.speed_mps + random.Normal(0.0, 0.1), 0.0, 0.0;
+      track.state_O.covariance = StateVector(0.02, 0.02, 2e-4, 0.02, 1e-3, 0.05).asDiagonal();
+      track.extent = {4.5, 1.8, 0.1, 0.1};
+      track.existence = 0.99;
+      track.is_confirmed = car.radar_hits >= 2;
+      track.last_radar = car.last_radar;
+      track.last_camera = car.last_camera;
+      track.radar_hits = car.radar_hits;
+      track.camera_hits = car.camera_hits;
+      frame.tracks.push_back(track);
+      frame.updates.push_back({car.local_id, Radar(car, track.extent)});
+      occluders.push_back({.id = track.id,
+                           .centre_O = track.state_O.mean.head<2>(),
+                           .yaw_rad = car.yaw_rad,
+                           .position_sigma_m = 0.14});
+    }
+    map.SetScene(frame.ego, occluders);
+    perception.OnFrame(frame, map, outputs);
+  }
+
+  // What radar 0 would report of a car: h at the truth, plus noise.
+  RadarMeasurement Radar(const Car& car, const Extent& extent) {
+    RadarMeasurement measurement;
+    measurement.covariance = Eigen::Vector3d(0.04, 1e-4, 0.01).asDiagonal();
+    StateVector x;
+    x << car.p.x(), car.p.y(), car.yaw_rad, car.speed_mps, 0.0, 0.0;
+    for (int pass = 0; pass < 2; ++pass) {  // The second with its own range as reference.
+      const auto at_truth = LinearizeRadar(x, extent, Ego(), vehicle.radars[0], measurement);
+      if (!at_truth) break;
+      measurement.range_m -= at_truth->y[0];
+      measurement.azimuth_rad -= at_truth->y[1];
+      measurement.range_rate_mps -= at_truth->y[2];
+      measurement.near_range_m = measurement.range_m;
+    }
+    measurement.ground_range_rate_mps = measurement.range_rate_mps;
+    measurement.range_m += random.Normal(0.0, 0.2);
+    measurement.azimuth_rad += random.Normal(0.0, 0.01);
+    measurement.range_rate_mps += random.Normal(0.0, 0.1);
+    return measurement;
+  }
+
+  void Say(SenderId sender, const Eigen::Vector2d& p, double yaw_rad, double speed_mps,
+           double noise_m = 0.5, double height_m = 60.0) {
+    Claim claim;
+    claim.sender = sender;
+    claim.received = now;
+    claim.p_E = plane
+                    .ToEcefPoint(LocalPoint{{p.x() + random.Normal(0.0, noise_m),
+                                             p.y() + random.Normal(0.0, noise_m), 0.0}})
+                    .p_E;
+    claim.course_E =
+        plane.R_LE().transpose() * Eigen::Vector3d(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
+    claim.has_elevation = true;
+    claim.height_m = height_m;
+    claim.speed_mps = speed_mps;
+    claim.position_sigma_m = std::max(0.5, noise_m);
+    perception.OnClaim(claim, Ego(), outputs);
+  }
+
+  // Claims of car 0 with a bias, every other frame.
+  void Honest(SenderId sender, const Eigen::Vector2d& bias = {1.0, -0.8}) {
+    if (frames % 2 == 0) {
+      Say(sender, cars[0].p + bias, cars[0].yaw_rad, cars[0].speed_mps);
+    }
+  }
+
+  template <class Say>
+  void Run(double for_s, Say say) {
+    for (int i = 0; i < std::lround(for_s / kFrame_s); ++i) {
+      Move(kFrame_s);
+      if (frames % 4 == 0) Fix();
+      Frame();
+      say();
+    }
+  }
+
+  [[nodiscard]] std::vector<PublishedTrack> Priority() const {
+    TrackList list;
+    perception.Publish(now, Ego(), list);
+    return list.tracks;
+  }
+
+  VehicleConfig vehicle;
+  LocalPlane plane{kHome};
+  Timestamp now = FromMicros(1'700'000'000'000'000);
+  int frames = 0;
+  Random random;
+  PriorityPerception perception;
+  VisibilityMap map;
+  Outputs outputs;
+  std::vector<Car> cars;
+  bool has_wall = false;
+};
+
+Car OncomingCar(double x_m = 70.0) {
+  return {.local_id = 7, .p = {x_m, 3.5}, .yaw_rad = kPi, .speed_mps = 5.0};
+}
+
+// A scene in which car 0 has been validated for `for_s`.
+Scene Validated(std::uint64_t seed, double for_s = 6.0, double x_m = 70.0) {
+  Scene scene(seed);
+  scene.cars = {OncomingCar(x_m)};
+  scene.Run(for_s, [&] { scene.Honest(1); });
+  EXPECT_EQ(scene.Priority().size(), 1u) << "seed " << seed;
+  return scene;
+}
+
+void Hide(Scene& scene) {
+  scene.cars[0].is_seen = false;
+  scene.has_wall = true;
+}
+
+double ErrorOf(const PublishedTrack& line, const Car& car) {
+  return (line.track.state_O.mean.head<2>() - car.p).norm();
+}
+
+TEST(PriorityPerception, ValidatedVehicleIsAsGoodAsLocalWhileSeen) {
+  Scene scene = Validated(1);
+  double squared = 0.0;
+  int count = 0;
+  scene.Run(2.0, [&] {
+    scene.Honest(1);
+    const auto lines = scene.Priority();
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_EQ(lines[0].local_id, 7u);
+    EXPECT_EQ(lines[0].trust, TrustState::kValidated);
+    EXPECT_EQ(lines[0].sender, 1u);
+    EXPECT_TRUE(lines[0].position.has_value());
+    squared += std::pow(ErrorOf(lines[0], scene.cars[0]), 2);
+    ++count;
+  });
+  EXPECT_LT(std::sqrt(squared / count), 0.2);
+  const auto bias = scene.perception.BiasOf(1);
+  ASSERT_TRUE(bias.has_value());
+  EXPECT_LT((bias->mean_en - Eigen::Vector2d(1.0, -0.8)).norm(), 0.6);
+}
+
+TEST(PriorityPerception, NothingIsPublishedBeforeTheRunOfAgreement) {
+  Scene scene;
+  scene.cars = {OncomingCar()};
+  scene.Run(1.5, [&] {
+    scene.Honest(1);
+    EXPECT_TRUE(scene.Priority().empty());
+  });
+}
+
+TEST(PriorityPerception, BridgesFourSecondsAndTakesTheVehicleBackUnderItsId) {
+  double squared = 0.0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Scene scene = Validated(seed);
+    const std::uint64_t id = scene.Priority()[0].track.id;
+    Hide(scene);
+    scene.Run(4.0, [&] {
+      scene.Honest(1);
+      const auto lines = scene.Priority();
+      ASSERT_EQ(lines.size(), 1u) << "seed " << seed;
+      EXPECT_EQ(lines[0].track.id, id);
+      squared += std::pow(ErrorOf(lines[0], scene.cars[0]), 2);
+      ++count;
+    });
+    EXPECT_EQ(scene.Priority()[0].trust, TrustState::kBridged);
+    EXPECT_EQ(scene.Priority()[0].local_id, 0u);
+    EXPECT_EQ(scene.Priority()[0].track.visibility, Visibility::kHidden);
+    // Back in view as a new LOCAL track.
+    scene.has_wall = false;
+    scene.cars[0] = {.local_id = 8,
+                     .p = scene.cars[0].p,
+                     .yaw_rad = scene.cars[0].yaw_rad,
+                     .speed_mps = scene.cars[0].speed_mps};
+    scene.Run(1.0, [&] { scene.Honest(1); });
+    const auto lines = scene.Priority();
+    ASSERT_EQ(lines.size(), 1u) << "seed " << seed;
+    EXPECT_EQ(lines[0].track.id, id);
+    EXPECT_EQ(lines[0].local_id, 8u);
+    EXPECT_EQ(lines[0].trust, TrustState::kValidated);
+    EXPECT_TRUE(scene.outputs.reports.empty());
+  }
+  EXPECT_LT(std::sqrt(squared / count), 0.6);
+}
+
+TEST(PriorityPerception, GhostIsNeverPublished) {
+  Random places(99);
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Scene scene(seed);
+    scene.cars = {OncomingCar()};
+    scene.has_wall = seed % 2 == 0;
+    scene.cars[0].is_seen = !scene.has_wall;
+    const bool rides_along = seed % 3 == 0;  // Beside the real car, 8 m off, same speed.
+    Eigen::Vector2d ghost(places.Uniform(5.0, 120.0), places.Uniform(-40.0, 40.0));
+    const double yaw_rad = places.Uniform(-kPi, kPi);
+    const double speed_mps = places.Uniform(0.0, 15.0);
+    scene.Run(8.0, [&] {
+      const Car& car = scene.cars[0];
+      ghost += kFrame_s * speed_mps * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
+      if (rides_along) {
+        scene.Say(66, car.p + Eigen::Vector2d(0.0, 8.0), car.yaw_rad, car.speed_mps, 0.1);
+      } else if ((ghost - car.p).norm() > 7.0) {
+        scene.Say(66, ghost, yaw_rad, speed_mps, 0.1);
+      }
+      EXPECT_TRUE(scene.Priority().empty()) << "seed " << seed;
+    });
+  }
+}
+
+TEST(PriorityPerception, PlaceInClearViewThatIsEmptyEndsTheBridgeWithinASecond) {
+  Scene scene = Validated(2);
+  scene.cars[0].is_seen = false;  // Gone, and nothing hides the place.
+  const Timestamp lost = scene.now;
+  Timestamp ended{};
+  scene.Run(3.0, [&] {
+    scene.Honest(1);
+    if (ended == Timestamp{} && scene.Priority().empty()) ended = scene.now;
+  });
+  ASSERT_NE(ended, Timestamp{});
+  EXPECT_LT(ToSeconds(ended - lost), 1.4);  // 0.35 s of missing support and about a second.
+  ASSERT_FALSE(scene.outputs.reports.empty());
+  EXPECT_EQ(scene.outputs.reports[0].check, "empty_place");
+  EXPECT_EQ(scene.outputs.reports[0].verdict, Verdict::kWithdraw);
+  EXPECT_EQ(scene.perception.TrustOf(1), TrustState::kSuspect);
+}
+
+TEST(PriorityPerception, BudgetEndsTheBridgeWithoutBlame) {
+  Scene scene = Validated(3, 4.5, 120.0);
+  const double budget_s = scene.Priority()[0].bridge_budget_s;
+  EXPECT_GE(budget_s, 4.5);
+  EXPECT_LT(budget_s, 10.0);
+  Hide(scene);
+  const Timestamp lost = scene.now;
+  Timestamp ended{};
+  scene.Run(11.0, [&] {
+    scene.Honest(1);
+    if (ended == Timestamp{} && scene.Priority().empty()) ended = scene.now;
+  });
+  ASSERT_NE(ended, Timestamp{});
+  // The claims round the last hit still count as co-observed.
+  EXPECT_NEAR(ToSeconds(ended - lost), budget_s, 0.35);
+  EXPECT_TRUE(scene.outputs.reports.empty());
+  EXPECT_TRUE(scene.Priority().empty());
+}
+
+TEST(PriorityPerception, SilenceEndsTheBridgeAfterOneSecondAndTheSightAfterTwo) {
+  Scene hidden = Validated(4);
+  Hide(hidden);
+  hidden.Run(0.9, [] {});
+  EXPECT_EQ(hidden.Priority().size(), 1u);
+  hidden.Run(0.3, [] {});
+  EXPECT_TRUE(hidden.Priority().empty());
+
+  Scene seen = Validated(4);
+  const std::uint64_t id = seen.Priority()[0].track.id;
+  seen.Run(1.8, [] {});
+  EXPECT_EQ(seen.Priority().size(), 1u);
+  seen.Run(0.4, [] {});
+  EXPECT_TRUE(seen.Priority().empty());
+  seen.Run(3.0, [&] { seen.Honest(1); });  // Speaks again: same LOCAL track, same id.
+  ASSERT_EQ(seen.Priority().size(), 1u);
+  EXPECT_EQ(seen.Priority()[0].track.id, id);
+}
+
+TEST(PriorityPerception, HijackerWhoWalksOffInViewIsWithdrawn) {
+  for (const double lateral_mps : {1.0, 2.0, 5.0}) {
+    Scene scene = Validated(5);
+    const Timestamp left = scene.now;
+    Eigen::Vector2d claimed = scene.cars[0].p + Eigen::Vector2d(1.0, -0.8);
+    Timestamp ended{};
+    double exposure_m = 0.0;
+    scene.Run(6.0, [&] {
+      claimed += kFrame_s * Eigen::Vector2d(-scene.cars[0].speed_mps, -lateral_mps);
+      const double speed_mps = std::hypot(scene.cars[0].speed_mps, lateral_mps);
+      const double yaw_rad = std::atan2(-lateral_mps, -scene.cars[0].speed_mps);
+      if (scene.frames % 2 == 0) scene.Say(1, claimed, yaw_rad, speed_mps, 0.3);
+      const auto lines = scene.Priority();
+      if (lines.empty() && ended == Timestamp{}) ended = scene.now;
+      for (const auto& line : lines) {
+        exposure_m = std::max(exposure_m, ErrorOf(line, scene.cars[0]));
+      }
+    });
+    ASSERT_NE(ended, Timestamp{}) << lateral_mps;
+    // Below about 1.5 m/s the velocity is an honest receiver's, and the drift of 3 m must tell.
+    EXPECT_LE(ToSeconds(ended - left), lateral_mps < 1.5 ? 4.5 : 2.5) << lateral_mps;
+    EXPECT_LE(exposure_m, 1.0) << lateral_mps;
+    ASSERT_FALSE(scene.outputs.reports.empty());
+  }
+}
+
+TEST(PriorityPerception, TeleportInViewOrHiddenIsWithdrawn) {
+  for (const bool is_hidden : {false, true}) {
+    Scene scene = Validated(6);
+    if (is_hidden) {
+      Hide(scene);
+      scene.Run(1.0, [&] { scene.Honest(1); });
+    }
+    scene.Run(1.0, [&] {
+      if (scene.frames % 2 == 0) {
+        scene.Say(1, scene.cars[0].p + Eigen::Vector2d(0.0, 30.0), kPi, 5.0);
+      }
+    });
+    EXPECT_TRUE(scene.Priority().empty());
+    EXPECT_EQ(scene.perception.TrustOf(1), TrustState::kSuspect);
+  }
+}
+
+TEST(PriorityPerception, HonestIdentityChangeKeepsTheVehicleSeenOrHidden) {
+  for (const bool is_hidden : {false, true}) {
+    Scene scene = Validated(7);
+    const std::uint64_t id = scene.Priority()[0].track.id;
+    if (is_hidden) {
+      Hide(scene);
+      scene.Run(1.0, [&] { scene.Honest(1); });
+    }
+    const double budget_s = scene.Priority()[0].bridge_budget_s;
+    scene.Run(0.2, [] {});  // The change of pseudonym itself.
+    scene.Run(2.0, [&] {
+      scene.Honest(2);
+      ASSERT_EQ(scene.Priority().size(), 1u) << is_hidden;
+      EXPECT_EQ(scene.Priority()[0].track.id, id);
+    });
+    EXPECT_EQ(scene.Priority()[0].sender, 2u);
+    if (is_hidden) {
+      EXPECT_NEAR(scene.Priority()[0].bridge_budget_s, budget_s - 2.2, 0.1);
+    }
+    EXPECT_TRUE(scene.outputs.reports.empty());
+  }
+}
+
+TEST(PriorityPerception, OldIdThatSpeaksAgainTakesItsVehicleBack) {
+  Scene scene = Validated(8);
+  scene.Run(0.3, [] {});
+  scene.Run(0.6, [&] { scene.Honest(2); });
+  ASSERT_EQ(scene.Priority().size(), 1u);
+  ASSERT_EQ(scene.Priority()[0].sender, 2u);
+  scene.Run(0.2, [&] { scene.Honest(1); });
+  ASSERT_EQ(scene.Priority().size(), 1u);
+  EXPECT_EQ(scene.Priority()[0].sender, 1u);
+  EXPECT_EQ(scene.perception.TrustOf(2), TrustState::kSuspect);
+}
+
+TEST(PriorityPerception, SecondIdOnTheSameCarNeverGetsIn) {
+  Scene scene = Validated(9);
+  scene.Run(5.0, [&] {
+    scene.Honest(1);
+    scene.Honest(2, {0.1, 0.0});
+    ASSERT_EQ(scene.Priority().size(), 1u);
+    EXPECT_EQ(scene.Priority()[0].sender, 1u);
+  });
+}
+
+TEST(PriorityPerception, CarOnTheBridgeAboveIsNotTheCarBelow) {
+  Scene scene;
+  scene.cars = {OncomingCar()};
+  scene.Run(5.0, [&] {
+    scene.Say(1, scene.cars[0].p, kPi, 5.0, 0.3, 66.0);
+    EXPECT_TRUE(scene.Priority().empty());
+  });
+}
+
+TEST(PriorityPerception, NobodyIsValidatedWhileTheEgosPlaceIsInDoubt) {
+  Scene scene;
+  scene.cars = {OncomingCar()};
+  scene.Run(0.5, [] {});
+  for (int i = 0; i < 5; ++i) scene.Fix({50.0, 0.0});
+  ASSERT_TRUE(scene.perception.alignment().is_suspect());
+  scene.Run(4.0, [&] {
+    scene.Honest(1);
+    scene.Fix({50.0, 0.0});
+    EXPECT_TRUE(scene.Priority().empty());
+  });
+}
+
+TEST(PriorityPerception, EgoJumpMovesNoValidatedVehicle) {
+  Scene scene = Validated(10);
+  const std::uint64_t id = scene.Priority()[0].track.id;
+  Hide(scene);
+  for (int i = 0; i < 40; ++i) {
+    scene.Move(kFrame_s);
+    scene.Fix({50.0, 0.0});
+    scene.Frame();
+    scene.Honest(1);
+    ASSERT_EQ(scene.Priority().size(), 1u);
+    EXPECT_EQ(scene.Priority()[0].track.id, id);
+    EXPECT_LT(ErrorOf(scene.Priority()[0], scene.cars[0]), 1.0);
+  }
+}
+
+TEST(PriorityPerception, PaperModePublishesEveryPairAtOnce) {
+  PriorityConfig config;
+  config.association = AssociationMode::kPaper;
+  Scene scene(11, config);
+  scene.cars = {OncomingCar()};
+  scene.Run(0.3, [&] {
+    scene.Honest(1);
+    scene.Honest(2, {-1.0, 0.0});
+  });
+  EXPECT_EQ(scene.Priority().size(), 2u);
+  scene.cars[0].is_seen = false;  // In clear view: the paper's method does not look.
+  scene.Run(5.0, [&] { scene.Honest(1); });
+  EXPECT_EQ(scene.Priority().size(), 1u);
+}
+
+TEST(PriorityPerception, CopyIsACheckpoint) {
+  Scene scene = Validated(12);
+  Scene branch = scene;
+  const auto go_on = [](Scene& s) {
+    Hide(s);
+    s.Run(2.0, [&] { s.Honest(1); });
+    return s.Priority();
+  };
+  const auto a = go_on(scene);
+  const auto b = go_on(branch);
+  ASSERT_EQ(a.size(), 1u);
+  ASSERT_EQ(b.size(), 1u);
+  EXPECT_EQ(std::memcmp(a[0].track.state_O.mean.data(), b[0].track.state_O.mean.data(),
+                        sizeof(StateVector)),
+            0);
+  EXPECT_EQ(std::memcmp(a[0].track.state_O.covariance.data(), b[0].track.state_O.covariance.data(),
+                        sizeof(StateMatrix)),
+            0);
+  EXPECT_EQ(a[0].track.id, b[0].track.id);
+}
+
+TEST(PriorityPerception, CheckpointStaysSmall) {
+  Scene scene;
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    Car car = OncomingCar();
+    car.local_id = 100 + i;
+    car.p = {30.0 + 12.0 * static_cast<double>(i % 10), -30.0 + 12.0 * static_cast<double>(i / 10)};
+    scene.cars.push_back(car);
+  }
+  scene.Run(4.0, [&] {
+    if (scene.frames % 2 != 0) return;
+    for (std::size_t i = 0; i < scene.cars.size(); ++i) {
+      scene.Say(static_cast<SenderId>(1 + i), scene.cars[i].p, kPi, 5.0);
+    }
+  });
+  const std::size_t bytes = scene.perception.checkpoint_bytes();
+  std::printf("%zu vehicles, checkpoint %zu bytes\n", scene.perception.vehicle_count(), bytes);
+  EXPECT_GE(scene.perception.vehicle_count(), 20u);
+  EXPECT_LT(bytes, 400'000u);
+}
+
+TEST(PriorityPerception, ResidualsForTheBiasEstimateAreRaw) {
+  Scene scene = Validated(13);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int count = 0;
+  scene.Run(3.0, [&] {
+    scene.perception.TakeResiduals();
+    scene.Honest(1);
+    for (const BiasResidual& residual : scene.perception.TakeResiduals()) {
+      sum += residual.claimed_minus_sensed_en;
+      ++count;
+    }
+  });
+  EXPECT_EQ(count, 30);
+  EXPECT_LT((sum / count - Eigen::Vector2d(1.0, -0.8)).norm(), 0.4);
+}
+
+}  // namespace
+}  // namespace v2vouch
