@@ -182,7 +182,7 @@ void CameraSimulator::LookClosely(const Snapshot& snapshot, double extra_pitch_r
       }
     } else {
       result.sight.detection_probability =
-          camera_.detection_probability * std::clamp((height_px - 8.0) / 12.0, 0.0, 1.0) *
+          camera_.detection_probability * std::clamp((height_px - 5.0) / 7.0, 0.0, 1.0) *
           std::clamp((result.sight.visible_fraction - 0.15) / 0.35, 0.0, 1.0);
     }
   }

@@ -22,7 +22,7 @@ std::optional<Eigen::Vector2d> Project(const CameraConfig& camera, const Eigen::
 /// One smart camera. Realistic mode: the box is the bounding box of the part of the projected
 /// cuboid that nothing nearer covers, cut at the picture's border; every edge that is not cut has
 /// white noise of `edge_sigma_px`; body pitch moves the whole picture. Detection:
-///     P = detection_probability * clamp((height_px - 8) / 12) * clamp((visible - 0.15) / 0.35)
+///     P = detection_probability * clamp((height_px - 5) / 7) * clamp((visible - 0.15) / 0.35)
 /// with the class confused now and then, a score, and false boxes.
 ///
 /// Ideal points: box 2 px wide and 2 px high whose bottom centre is the projected ground point

@@ -111,13 +111,13 @@ RadarSimulator::RadarSimulator(const World& world, int index, std::uint64_t seed
       const double length = (b - a).norm();
       const Vec2 normal = -LeftOf((b - a) / length);  // Outwards: the outline is counter-clockwise.
       scatterers_.push_back({a, Vec2::Zero(), 12.0, 0.8});
-      for (double s = 1.25; s < length; s += 2.5) {  // Window frames, pipes, door steps.
-        scatterers_.push_back({a + (b - a) * (s / length), normal, 6.0, 0.4});
+      for (double s = 1.0; s < length; s += 2.0) {  // Window frames, pipes, door steps.
+        scatterers_.push_back({a + (b - a) * (s / length), normal, 6.0, 0.6});
       }
       mirrors_.emplace_back(a, b);
     }
   }
-  for (const Vec2& pole : world.poles()) scatterers_.push_back({pole, Vec2::Zero(), 4.0, 0.75});
+  for (const Vec2& pole : world.poles()) scatterers_.push_back({pole, Vec2::Zero(), 4.0, 0.95});
   for (const Rail& rail : world.rails()) {
     for (std::size_t i = 0; i < rail.points.size(); ++i) {
       scatterers_.push_back({rail.points[i], Vec2::Zero(), 2.0, 0.6});
@@ -133,10 +133,12 @@ RadarSimulator::Antenna RadarSimulator::AntennaAt(const EgoTruth& ego) const {
 
 void RadarSimulator::Look(const Snapshot& snapshot, std::vector<Sight>& sights) {
   const Antenna antenna = AntennaAt(snapshot.ego);
-  skyline_.Cast(antenna.place, antenna.yaw_rad, 2.0 * radar_.max_range_m, snapshot, world_.walls());
+  skyline_.Cast(antenna.place, antenna.yaw_rad, radar_.max_range_m + 20.0, snapshot,
+                world_.walls());
   const std::size_t n = snapshot.actors.size();
   std::vector<int> covered(n, 0);
-  std::vector<int> seen(n, 0);
+  if (open_rays_.size() < n) open_rays_.resize(n);
+  for (auto& rays : open_rays_) rays.clear();
   std::vector<double> nearest(n, 1e9);
   for (int ray = 0; ray < skyline_.size(); ++ray) {
     const auto& hits = skyline_.hits(ray);
@@ -145,7 +147,7 @@ void RadarSimulator::Look(const Snapshot& snapshot, std::vector<Sight>& sights) 
       if (object >= n) continue;
       ++covered[object];
       if (i == 0 && hits[i].range_m <= radar_.max_range_m) {
-        ++seen[object];
+        open_rays_[object].push_back(ray);
         nearest[object] = std::min(nearest[object], hits[i].range_m);
       }
     }
@@ -153,9 +155,9 @@ void RadarSimulator::Look(const Snapshot& snapshot, std::vector<Sight>& sights) 
   const bool ideal = world_.scenario().sensors.mode == SensorMode::kIdealPoints;
   sights.assign(n, {});
   for (std::size_t i = 0; i < n; ++i) {
-    if (seen[i] == 0) continue;
+    if (open_rays_[i].empty()) continue;
     Sight& sight = sights[i];
-    sight.visible_fraction = static_cast<double>(seen[i]) / covered[i];
+    sight.visible_fraction = static_cast<double>(open_rays_[i].size()) / covered[i];
     if (ideal) {
       const Vec2 d = snapshot.actors[i].motion.centre - antenna.place;
       const double azimuth = AngleDifference(std::atan2(d.y(), d.x()), antenna.yaw_rad);
@@ -217,16 +219,9 @@ void RadarSimulator::AddVehicles(const Snapshot& snapshot, std::int64_t seq, con
       continue;
     }
     // Points on the visible faces: where rays meet this vehicle first.
-    std::vector<int> rays;
-    double nearest = 1e9;
-    for (int ray = 0; ray < skyline_.size(); ++ray) {
-      const auto& hits = skyline_.hits(ray);
-      if (hits.empty() || hits.front().object != static_cast<int>(i)) continue;
-      if (hits.front().range_m > radar_.max_range_m) continue;
-      rays.push_back(ray);
-      nearest = std::min(nearest, hits.front().range_m);
-    }
-    if (rays.empty()) continue;
+    const std::vector<int>& rays = open_rays_[i];
+    double nearest = radar_.max_range_m;
+    for (const int ray : rays) nearest = std::min(nearest, skyline_.hits(ray).front().range_m);
     const auto any_face_point = [&]() -> Vec2 {
       const auto pick =
           static_cast<std::size_t>(random.Uniform() * static_cast<double>(rays.size()));

@@ -72,6 +72,7 @@ class RadarSimulator {
   std::vector<Scatterer> scatterers_;
   std::vector<std::pair<Vec2, Vec2>> mirrors_;  ///< Pieces of rails and facades.
   std::vector<Sight> sights_;
+  std::vector<std::vector<int>> open_rays_;  ///< Per actor: rays that meet it first, within range.
 };
 
 }  // namespace v2vouch::sim

@@ -9,6 +9,7 @@ namespace v2vouch::sim {
 Skyline::Skyline(double half_span_rad, double step_rad)
     : half_span_rad_(half_span_rad), step_rad_(step_rad) {
   rays_.resize(static_cast<std::size_t>(std::ceil(2.0 * half_span_rad / step_rad)));
+  for (int ray = 0; ray < size(); ++ray) directions_.push_back(Direction(azimuth_rad(ray)));
 }
 
 int Skyline::RayAt(double azimuth_rad) const {
@@ -23,32 +24,47 @@ double Skyline::FreeRange(double azimuth_rad) const {
   return hits(ray).front().range_m;
 }
 
-void Skyline::AddOutline(const Vec2& origin, double yaw_rad, double max_range_m, int object,
-                         double height_m, const Vec2* corners, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec2 a = corners[i] - origin;
-    const Vec2 b = corners[(i + 1) % count] - origin;
-    // Counter-clockwise outline: a face that looks at us runs clockwise in our azimuth.
-    if (Cross(a, b) >= 0.0) continue;
-    const double right = WrapAngle(std::atan2(b.y(), b.x()) - yaw_rad);
-    const double span = AngleDifference(std::atan2(a.y(), a.x()), std::atan2(b.y(), b.x()));
-    for (const double low : {right, right - 2.0 * kPi}) {  // A face may straddle the back.
-      const double first = std::ceil((low + half_span_rad_) / step_rad_ - 0.5);
-      const double last = std::floor((low + span + half_span_rad_) / step_rad_ - 0.5);
-      const int from = static_cast<int>(std::max(0.0, first));
-      const int to = static_cast<int>(std::min(last, static_cast<double>(size() - 1)));
-      for (int ray = from; ray <= to; ++ray) {
-        const auto range =
-            RayHitsSegment(Vec2::Zero(), Direction(yaw_rad + azimuth_rad(ray)), a, b);
-        if (!range || *range > max_range_m) continue;
-        std::vector<Hit>& hits = rays_[static_cast<std::size_t>(ray)];
-        if (!hits.empty() && hits.back().object == object) {
-          hits.back().range_m = std::min(hits.back().range_m, *range);
-        } else {
-          hits.push_back({object, *range, height_m});
-        }
+void Skyline::AddFace(const Vec2& left, const Vec2& right, double max_range_m, int object,
+                      double height_m) {
+  const Vec2 edge = left - right;
+  const double cross = Cross(right, edge);  // Twice the area with us at the tip; above 0 here.
+  const double from_rad = std::atan2(right.y(), right.x());
+  const double span = AngleDifference(std::atan2(left.y(), left.x()), from_rad);
+  for (const double low : {from_rad, from_rad - 2.0 * kPi}) {  // A face may straddle the back.
+    const double first = std::ceil((low + half_span_rad_) / step_rad_ - 0.5);
+    const double last = std::floor((low + span + half_span_rad_) / step_rad_ - 0.5);
+    const int from = static_cast<int>(std::max(0.0, first));
+    const int to = static_cast<int>(std::min(last, static_cast<double>(size() - 1)));
+    for (int ray = from; ray <= to; ++ray) {
+      const auto index = static_cast<std::size_t>(ray);
+      const double across = Cross(directions_[index], edge);
+      if (across <= 1e-12) continue;  // Along the face, but for rounding.
+      const double range = cross / across;
+      if (range > max_range_m) continue;
+      std::vector<Hit>& hits = rays_[index];
+      if (!hits.empty() && hits.back().object == object) {
+        hits.back().range_m = std::min(hits.back().range_m, range);
+      } else {
+        hits.push_back({object, range, height_m});
       }
     }
+  }
+}
+
+void Skyline::AddOutline(const Vec2& origin, double yaw_rad, double max_range_m, int object,
+                         double height_m, const Vec2* corners, std::size_t count) {
+  const Vec2 forward = Direction(yaw_rad);
+  const Vec2 left = LeftOf(forward);
+  const auto in_sensor_axes = [&](const Vec2& point) -> Vec2 {
+    const Vec2 d = point - origin;
+    return {d.dot(forward), d.dot(left)};
+  };
+  Vec2 a = in_sensor_axes(corners[0]);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 b = in_sensor_axes(corners[(i + 1) % count]);
+    // Counter-clockwise outline: a face that looks at us runs clockwise round us.
+    if (Cross(a, b) < 0.0) AddFace(a, b, max_range_m, object, height_m);
+    a = b;
   }
 }
 

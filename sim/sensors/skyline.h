@@ -40,9 +40,12 @@ class Skyline {
  private:
   void AddOutline(const Vec2& origin, double yaw_rad, double max_range_m, int object,
                   double height_m, const Vec2* corners, std::size_t count);
+  void AddFace(const Vec2& left, const Vec2& right, double max_range_m, int object,
+               double height_m);
 
   double half_span_rad_;
   double step_rad_;
+  std::vector<Vec2> directions_;  ///< Of the rays, sensor axes.
   std::vector<std::vector<Hit>> rays_;
 };
 

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/wire/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <v2vouch/camera_detections_t.hpp>
+#include <v2vouch/radar_scan_t.hpp>
+#include <v2vouch/truth_list_t.hpp>
+
+#include "daemon/wire/codec.h"
+
+namespace v2vouch::sim {
+namespace {
+
+std::unique_ptr<World> Shipped(const std::string& name, std::uint64_t seed,
+                               SensorMode mode = SensorMode::kRealistic) {
+  Scenario scenario;
+  std::vector<std::string> problems;
+  EXPECT_TRUE(LoadScenario("sim/scenarios/" + name + ".yaml", scenario, problems));
+  scenario.sensors.mode = mode;
+  auto world = World::Make(scenario, seed, problems);
+  for (const std::string& problem : problems) ADD_FAILURE() << problem;
+  return world;
+}
+
+std::vector<SimEvent> AllEvents(const World& world, std::uint64_t seed) {
+  Simulation simulation(world, seed);
+  std::vector<SimEvent> all;
+  std::vector<SimEvent> events;
+  for (bool more = true; more;) {
+    more = simulation.Step(events);
+    all.insert(all.end(), events.begin(), events.end());
+  }
+  return all;
+}
+
+template <class T>
+T As(const SimEvent& event) {
+  const auto decoded = wire::Decode<T>(event.bytes);
+  EXPECT_TRUE(decoded) << event.channel;
+  return decoded ? *decoded : T{};
+}
+
+TEST(Simulation, TheSameSeedGivesTheSameBytesAndAnotherDoesNot) {
+  const auto world = Shipped("smoke", 5);
+  const auto first = AllEvents(*world, 5);
+  const auto second = AllEvents(*world, 5);
+  const auto other = AllEvents(*world, 6);
+  ASSERT_EQ(first.size(), second.size());
+  bool differs = first.size() != other.size();
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    ASSERT_EQ(first[i].arrival, second[i].arrival);
+    ASSERT_EQ(first[i].channel, second[i].channel);
+    ASSERT_EQ(first[i].bytes, second[i].bytes) << first[i].channel << " event " << i;
+    differs = differs || (i < other.size() && first[i].bytes != other[i].bytes);
+  }
+  EXPECT_TRUE(differs);
+}
+
+TEST(Simulation, EventsComeInOrderOfArrivalAndCameraLate) {
+  const auto world = Shipped("smoke", 5);
+  const auto events = AllEvents(*world, 5);
+  EXPECT_EQ(events.front().channel, "SIM_SCENARIO");
+  std::map<std::string, int> counts;
+  double latest_s = 0.0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (i > 0) {
+      EXPECT_GE(events[i].arrival, events[i - 1].arrival);
+    }
+    ++counts[events[i].channel];
+    if (events[i].channel != "CAMERA_FRONT") continue;
+    const auto picture = As<camera_detections_t>(events[i]);
+    const double latency = ToSeconds(events[i].arrival - FromMicros(picture.utime));
+    EXPECT_GE(latency, 0.0599);
+    latest_s = std::max(latest_s, latency);
+  }
+  EXPECT_GT(latest_s, 0.09);
+  EXPECT_EQ(counts["SIM_SCENARIO"], 1);
+  EXPECT_EQ(counts["EGO_MOTION"], 300);
+  EXPECT_EQ(counts["TRUTH"], 120);
+  EXPECT_GE(counts["RADAR_FRONT"], 119);
+  EXPECT_GE(counts["BSM"], 50);
+}
+
+TEST(LeftTurn, CriticalCarIsSeenLongThenHiddenThreeToFiveSecondsThenSeenAgain) {
+  const auto world = Shipped("left_turn", 1);
+  std::vector<std::pair<double, bool>> hidden;
+  std::map<std::string, double> seen_s;  // Before the occlusion, by sensor.
+  std::int64_t begin = 0;
+  for (const SimEvent& event : AllEvents(*world, 1)) {
+    if (event.channel != "TRUTH") continue;
+    const auto truth = As<truth_list_t>(event);
+    if (begin == 0) begin = truth.utime;
+    const double time = 1e-6 * static_cast<double>(truth.utime - begin);
+    for (const auto& object : truth.objects) {
+      if (object.id != 2) continue;
+      hidden.emplace_back(time, object.is_hidden != 0);
+      if (time > 17.0) continue;
+      for (const auto& sensor : object.sensors) {
+        if (sensor.detection_probability > 0.5) seen_s[sensor.sensor] += 0.05;
+      }
+    }
+  }
+  // The occlusion: the stretch of hidden samples round 18 s.
+  const auto middle = std::find_if(hidden.begin(), hidden.end(),
+                                   [](const auto& sample) { return sample.first > 18.0; });
+  ASSERT_NE(middle, hidden.end());
+  ASSERT_TRUE(middle->second);
+  auto from = middle;
+  auto to = middle;
+  while (from != hidden.begin() && std::prev(from)->second) --from;
+  while (to != hidden.end() && to->second) ++to;
+  ASSERT_NE(to, hidden.end());
+  const double lasts = to->first - from->first;
+  EXPECT_GE(lasts, 3.0);
+  EXPECT_LE(lasts, 5.0);
+  EXPECT_GE(seen_s["RADAR_FRONT"], 6.0);
+  EXPECT_GE(seen_s["CAMERA_FRONT"], 6.0);
+}
+
+class StaticReturns : public testing::TestWithParam<const char*> {};
+
+// Standing returns: Doppler explained by the antenna's own motion, taken from the truth.
+TEST_P(StaticReturns, EightAtLeastInEveryScanOfEveryRadar) {
+  const auto world = Shipped(GetParam(), 1);
+  const VehicleConfig& vehicle = world->scenario().vehicle;
+  const auto start = static_cast<std::int64_t>(world->scenario().start_utc_s) * 1000000;
+  for (const SimEvent& event : AllEvents(*world, 1)) {
+    if (!event.channel.starts_with("RADAR_")) continue;
+    const auto scan = As<radar_scan_t>(event);
+    const auto radar = std::find_if(vehicle.radars.begin(), vehicle.radars.end(),
+                                    [&](const auto& r) { return r.name == scan.sensor; });
+    ASSERT_NE(radar, vehicle.radars.end());
+    const EgoTruth ego = world->At(1e-6 * static_cast<double>(scan.utime - start)).ego;
+    const Vec2 velocity(ego.speed_mps - ego.yaw_rate_radps * radar->y_m,
+                        ego.yaw_rate_radps * radar->x_m);
+    int standing = 0;
+    for (const auto& d : scan.detections) {
+      const double ground =
+          d.range_rate_mps + velocity.dot(Direction(radar->yaw_rad + d.azimuth_rad));
+      // Doppler noise and, at speed, the angle's noise.
+      if (std::abs(ground) < 0.5 + 4.0 * radar->azimuth_sigma_rad * ego.speed_mps) ++standing;
+    }
+    EXPECT_GE(standing, 8) << event.channel << " at "
+                           << 1e-6 * static_cast<double>(scan.utime - start) << " s";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StaticReturns, testing::Values("left_turn", "urban", "highway"));
+
+TEST(IdealPoints, GiveOneDetectionPerVehicleAndNothingElse) {
+  const auto world = Shipped("left_turn", 1, SensorMode::kIdealPoints);
+  const auto start = static_cast<std::int64_t>(world->scenario().start_utc_s) * 1000000;
+  const RadarConfig& front = world->scenario().vehicle.radars[0];
+  std::size_t total = 0;
+  for (const SimEvent& event : AllEvents(*world, 1)) {
+    if (event.channel != "RADAR_FRONT") continue;
+    const auto scan = As<radar_scan_t>(event);
+    const Snapshot snapshot = world->At(1e-6 * static_cast<double>(scan.utime - start));
+    std::map<std::uint32_t, int> matched;
+    for (const auto& d : scan.detections) {
+      const Vec2 p = snapshot.ego.PointAt(front.x_m, front.y_m) +
+                     d.range_m * Direction(snapshot.ego.yaw_rad + d.azimuth_rad);
+      const auto nearest = std::min_element(
+          snapshot.actors.begin(), snapshot.actors.end(), [&](const auto& a, const auto& b) {
+            return (a.motion.centre - p).norm() < (b.motion.centre - p).norm();
+          });
+      // Five sigma of range and azimuth.
+      EXPECT_LT((nearest->motion.centre - p).norm(),
+                5.0 * (front.range_sigma_m + d.range_m * front.azimuth_sigma_rad));
+      EXPECT_EQ(++matched[nearest->actor->id], 1);
+      ++total;
+    }
+  }
+  EXPECT_GT(total, 1000u);
+}
+
+}  // namespace
+}  // namespace v2vouch::sim
