@@ -117,19 +117,26 @@ void DrawNames(Svg& svg, const Evaluation& evaluation, const Window& window, Tim
     const TruthObject& object = evaluation.log.truth.objects[o];
     const auto motion = object.motion.At(t);
     if (!motion || !object.is_vehicle()) return;
-    double right = 0.0;
+    Eigen::Vector2d reach = Eigen::Vector2d::Zero();
     const Eigen::Vector2d middle = window(motion->position());
     for (const auto& corner :
          window(Corners(motion->position(), motion->yaw_rad, object.length_m, object.width_m))) {
-      right = std::max(right, corner.x() - middle.x());
+      reach = reach.cwiseMax((corner - middle).cwiseAbs());
     }
-    svg.Text(middle.x() + right + 4.0, middle.y() + 3.5,
-             std::to_string(object.id) + (object.has_v2v ? " V2V" : ""), style);
+    // Beside an upright box, above a lying one: away from the next car of the queue.
+    const std::string name = std::to_string(object.id) + (object.has_v2v ? " V2V" : "");
+    const std::string attributes = std::string("class=\"") + style + "\"";
+    if (reach.x() > reach.y()) {
+      svg.Text(middle.x(), middle.y() - reach.y() - 4.0, name,
+               attributes + " text-anchor=\"middle\"");
+    } else {
+      svg.Text(middle.x() + reach.x() + 4.0, middle.y() + 3.5, name, attributes);
+    }
   };
   for (std::size_t o = 0; o < evaluation.log.truth.objects.size(); ++o) {
-    if (!critical || *critical != o) draw(o, "class=\"id\"");
+    if (!critical || *critical != o) draw(o, "id");
   }
-  if (critical) draw(*critical, "class=\"id critical\"");
+  if (critical) draw(*critical, "id critical");
 }
 
 void DrawList(Svg& svg, const Evaluation& evaluation, const Window& window, Timestamp t,

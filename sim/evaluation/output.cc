@@ -192,9 +192,10 @@ std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
     out += Line("  %-4s %-30s %8.4f  (at most %g)\n", gate.passes() ? "ok" : "MISS",
                 gate.name.c_str(), gate.value, gate.limit);
   }
-  out += Line("\nhidden vehicles in PRIORITY: %.2f m RMS, %.2f m at most, over %.1f s of %.1f s\n",
-              evaluation.hidden.rms_m, evaluation.hidden.max_m, evaluation.hidden.seconds,
-              evaluation.hidden.possible_seconds);
+  out += Line(
+      "\nhidden vehicles in PRIORITY: %.2f m RMS, %.2f m at most, over %.1f s (bound: %.1f s)\n",
+      evaluation.hidden.rms_m, evaluation.hidden.max_m, evaluation.hidden.seconds,
+      evaluation.hidden.possible_seconds);
   out += Line("validated share %.1f %%; switches LOCAL %d, PRIORITY %d\n",
               100.0 * evaluation.validated_share, local.switches, priority.switches);
   out += Line(

@@ -21,7 +21,7 @@ constexpr PaperRow kPaperTable[] = {{56.12, kNone, 30.0, 47.43, 0.0},
 
 std::string Cells(std::initializer_list<double> values, int digits) {
   std::string out;
-  for (const double value : values) out += "<td>" + Number(value, digits) + "</td>";
+  for (const double value : values) out += "<td>" + Fixed(value, digits) + "</td>";
   return out;
 }
 
@@ -63,10 +63,10 @@ std::string ComparisonAt(const Evaluation& evaluation, const Evaluation* paper, 
     if (paper != nullptr) {
       const ListScore& theirs = pick(*paper)[Index(kind)];
       out += "<tr><td>the paper's association, this run</td>" + ScoreCells(theirs) + "<td>" +
-             Number(theirs.ratio(), 2) + "</td></tr>\n";
+             Fixed(theirs.ratio(), 2) + "</td></tr>\n";
     }
     out += "<tr class=\"ours\"><td>V2Vouch, this run</td>" + ScoreCells(ours) + "<td>" +
-           Number(ours.ratio(), 2) + "</td></tr>\n";
+           Fixed(ours.ratio(), 2) + "</td></tr>\n";
     out += "<tr class=\"bound\"><td>bound, this run</td>" +
            Cells({ours.bound_mean, kNone, ours.bound_missed_mean, 0.0, 0.0}, 2) +
            "<td></td></tr>\n";
@@ -97,6 +97,9 @@ std::string ComparisonHtml(const Evaluation& evaluation, const Evaluation* paper
   if (evaluation.settings.cutoff_m != 10.0) {
     out += ComparisonAt(evaluation, paper, 10.0, Against::kOwnScope);
   }
+  if (evaluation.settings.cutoff_m != 30.0) {
+    out += ComparisonAt(evaluation, paper, 30.0, Against::kOwnScope);
+  }
   return out + ComparisonAt(evaluation, paper, 30.0, Against::kAllVehicles);
 }
 
@@ -107,7 +110,7 @@ std::string DetailsHtml(const Evaluation& evaluation) {
   const auto row = [&](const std::string& name, int digits, const auto& value) {
     out += "<tr><td>" + name + "</td>";
     for (const ListKind kind : kLists) {
-      out += "<td>" + Number(value(evaluation.headline(kind)), digits) + "</td>";
+      out += "<td>" + Fixed(value(evaluation.headline(kind)), digits) + "</td>";
     }
     out += "</tr>\n";
   };
@@ -135,9 +138,9 @@ std::string DetailsHtml(const Evaluation& evaluation) {
       [](const ListScore& s) { return s.excess_missed_seconds; });
   out += "</table>\n<p>Hidden vehicles kept by PRIORITY: " + Number(evaluation.hidden.rms_m) +
          " m RMS, " + Number(evaluation.hidden.max_m) + " m at most, over " +
-         Number(evaluation.hidden.seconds, 1) + " of " +
+         Number(evaluation.hidden.seconds, 1) + " vehicle-seconds (the bound could keep them " +
          Number(evaluation.hidden.possible_seconds, 1) +
-         " vehicle-seconds. Validated share of the time it was possible: " +
+         " s). Validated share of the time it was possible: " +
          Number(100.0 * evaluation.validated_share, 1) + " %.</p>\n<p>Seconds in PRIORITY: ";
   bool is_first = true;
   for (const auto& [id, seconds] : evaluation.hold_s) {

@@ -19,11 +19,15 @@ std::string PointList(const std::vector<Eigen::Vector2d>& points) {
 
 }  // namespace
 
-std::string Number(double value, int digits) {
+std::string Fixed(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   char text[64];
   const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
-  std::string out(text, end.ptr);
+  return {text, end.ptr};
+}
+
+std::string Number(double value, int digits) {
+  std::string out = Fixed(value, digits);
   if (out.find('.') != std::string::npos) {
     out.erase(out.find_last_not_of('0') + 1);
     if (out.back() == '.') out.pop_back();

@@ -12,6 +12,8 @@ namespace v2vouch::evaluation {
 /// Shortest decimal form with at most `digits` places, no exponent, no locale: the same bytes
 /// everywhere.
 std::string Number(double value, int digits = 2);
+/// The same with exactly `digits` places, for columns of a table.
+std::string Fixed(double value, int digits);
 /// Text made safe for XML and HTML.
 std::string Escape(std::string_view text);
 

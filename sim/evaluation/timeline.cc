@@ -114,7 +114,7 @@ std::string Timeline(const Evaluation& evaluation, std::size_t rows_at_most) {
     const double y = kTop + kRow * static_cast<double>(r);
     stretches(rows[r].is_inside, y + 3.0, kRow - 6.0, "#eef0f3");
     for (const Interval& hidden : HiddenIntervals(evaluation, rows[r].object, false)) {
-      bar(hidden.from_s, hidden.to_s, y + 3.0, kRow - 6.0, colour::kHidden);
+      bar(hidden.from_s, std::min(end_s, hidden.to_s), y + 3.0, kRow - 6.0, colour::kHidden);
     }
     constexpr std::array kFills = {colour::kLocal, colour::kV2v, colour::kPriority};
     for (const ListKind kind : kLists) {
