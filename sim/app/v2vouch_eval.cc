@@ -36,7 +36,7 @@ std::function<void(double)> Progress(const char* what) {
 bool Load(const std::string& path, v2vouch::evaluation::RunLog& log) {
   std::string error;
   if (v2vouch::evaluation::ReadRunLog(path, Progress("reading"), log, error)) return true;
-  std::fprintf(stderr, "v2vouch-eval: %s: %s\n", path.c_str(), error.c_str());
+  std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());
   return false;
 }
 
