@@ -187,6 +187,18 @@ std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoSta
   out.R(0, 0) = (scatter + 0.02) * radial * radial + range_noise;
   out.R(1, 1) = (scatter + 0.02) * across * across + azimuth_noise;
   if (!std::isfinite(out.y.sum())) return std::nullopt;
+  // A cluster may be a part of the vehicle, never more than it: only a span longer than expected by
+  // more than its scatter counts, and what exceeds that.
+  for (int i = 0; i < 2; ++i) {
+    const double slack = std::sqrt(out.R(i, i));
+    if (out.y[i] > slack) {
+      out.y[i] -= slack;
+    } else {
+      out.y[i] = 0.0;
+      out.E.row(i).setZero();
+    }
+  }
+  if (out.y.isZero(0.0)) return std::nullopt;
   return out;
 }
 

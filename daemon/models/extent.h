@@ -53,8 +53,10 @@ std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
 void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state);
 
 /// What the spread of one cluster says about the size, for a vehicle of known motion: `n` returns
-/// spread evenly over a visible span D cover (n - 1) / (n + 1) D of it on average. Rows: radial
-/// span and azimuth span. Use with three or more returns of a sensor that gives plain reflections.
+/// spread evenly over a visible span D cover (n - 1) / (n + 1) D of it on average. A cluster may be
+/// a part of a vehicle, so a span can only make the vehicle longer. Rows: radial and azimuth span.
+/// For vehicles that show their side, three or more returns, and sensors that give plain
+/// reflections.
 /// @return nullopt where the cluster says nothing.
 std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoState& ego,
                                         const RadarConfig& radar,

@@ -18,9 +18,13 @@ constexpr double kCrossSpeedSigma_mps = 10.0;
 constexpr double kCameraSpeedSigma_mps = 8.0;
 // White acceleration of a point [m^2/s^3]: 2 m/s^2 that last for about a second.
 constexpr double kPointAccelPsd = 4.0;
-// The reflecting point wanders over the vehicle by this much, radially and across.
+// One reflection lies anywhere on a vehicle whose direction is unknown: this far from the mean of
+// all, radially and across (a car's side scatters by 1.3 m, its tail by 0.5 m). Part of it stays
+// however many reflections there are.
+constexpr double kReflectionRadialSigma_m = 0.5;
+constexpr double kReflectionAcrossSigma_m = 0.9;
 constexpr double kPointRadialSigma_m = 0.15;
-constexpr double kPointAcrossSigma_m = 0.3;
+constexpr double kPointAcrossSigma_m = 0.2;
 // A velocity that points somewhere: heading sigma for becoming a vehicle, and for being shown.
 constexpr double kDirectedSigma_rad = 0.25;
 constexpr double kShownSigma_rad = 0.6;
@@ -42,6 +46,23 @@ struct PointModel {
   PointJacobian H;
   Linearized::Covariance R;
 };
+
+// Noise of a cluster as a measurement of "the" reflecting point.
+Eigen::Matrix3d PointNoise(const RadarMeasurement& z, const RadarConfig& radar) {
+  Eigen::Matrix3d R = z.covariance;
+  const double n = z.is_object ? 16.0 : std::max(z.returns, 1);
+  const auto square = [](double a) { return a * a; };
+  // The sample's own scatter tells little for a few reflections: the larger of the two counts.
+  R(0, 0) = std::max(R(0, 0), (std::min(R(0, 0) * n, square(radar.range_sigma_m)) +
+                               square(kReflectionRadialSigma_m)) /
+                                  n) +
+            square(kPointRadialSigma_m);
+  R(1, 1) = std::max(R(1, 1), (std::min(R(1, 1) * n, square(radar.azimuth_sigma_rad)) +
+                               square(kReflectionAcrossSigma_m / z.range_m)) /
+                                  n) +
+            square(kPointAcrossSigma_m / z.range_m);
+  return R;
+}
 
 std::optional<PointModel> LinearizePoint(const Eigen::Vector4d& x, const RadarLook& look,
                                          const RadarMeasurement& z, bool is_exact) {
@@ -66,11 +87,7 @@ std::optional<PointModel> LinearizePoint(const Eigen::Vector4d& x, const RadarLo
       z.range_rate_mps - range_rate.value;
   out.H.resize(3, 4);
   out.H << range.gradient, azimuth.gradient, range_rate.gradient;
-  out.R = z.covariance;
-  if (!is_exact) {
-    out.R(0, 0) += kPointRadialSigma_m * kPointRadialSigma_m;
-    out.R(1, 1) += std::pow(kPointAcrossSigma_m / range.value, 2);
-  }
+  out.R = is_exact ? z.covariance : PointNoise(z, look.radar);
   const Eigen::Vector2d line_B = look.ego.X_OB.rotation().transpose() *
                                  Eigen::Vector2d(qx.value / range.value, qy.value / range.value);
   const double lever = line_B.y() * look.radar.x_m - line_B.x() * look.radar.y_m;
@@ -167,7 +184,8 @@ std::optional<Fix> FixOf(const CameraLook& look, const CameraMeasurement& z) {
                  across_sigma * across_sigma * across * across.transpose()};
 }
 
-TrackFilter TrackFilter::FromRadar(const RadarLook& look, const RadarMeasurement& z) {
+TrackFilter TrackFilter::FromRadar(const RadarLook& look, const RadarMeasurement& z,
+                                   const FilterSettings& settings) {
   TrackFilter filter;
   const Fix fix = FixOf(look, z);
   filter.seen_from_ = look.origin_O();
@@ -177,8 +195,9 @@ TrackFilter TrackFilter::FromRadar(const RadarLook& look, const RadarMeasurement
   const double radial_sigma = std::sqrt(z.covariance(2, 2)) + look.ego.speed_sigma_mps + 0.1;
   filter.point_ << fix.p_O, z.ground_range_rate_mps * line;
   filter.point_covariance_.setZero();
-  filter.point_covariance_.topLeftCorner<2, 2>() =
-      fix.covariance + kPointRadialSigma_m * kPointRadialSigma_m * Eigen::Matrix2d::Identity();
+  RadarMeasurement blurred = z;
+  blurred.covariance = settings.point_targets ? z.covariance : PointNoise(z, look.radar);
+  filter.point_covariance_.topLeftCorner<2, 2>() = FixOf(look, blurred).covariance;
   filter.point_covariance_.bottomRightCorner<2, 2>() =
       radial_sigma * radial_sigma * line * line.transpose() +
       kCrossSpeedSigma_mps * kCrossSpeedSigma_mps * across * across.transpose();
@@ -239,8 +258,14 @@ std::optional<Likelihood> TrackFilter::Evaluate(const RadarLook& look, const Rad
 std::optional<Likelihood> TrackFilter::Evaluate(const CameraLook& look, const CameraMeasurement& z,
                                                 const FilterSettings& settings) const {
   if (is_vehicle_) {
-    const auto model = LinearizeVehicle(vehicle_, AssumedExtent(vehicle_, settings), look, z);
-    return model ? EvaluateExtended(*model, vehicle_) : std::nullopt;
+    // A radar track is measured against what the box says it is: an 11 m lorry's silhouette is no
+    // outlier of a car's.
+    ExtendedState named = vehicle_;
+    if (object_class_ == ObjectClass::kUnknown && z.object_class != ObjectClass::kUnknown) {
+      AssumeClass(object_class_, z.object_class, named);
+    }
+    const auto model = LinearizeVehicle(named, AssumedExtent(named, settings), look, z);
+    return model ? EvaluateExtended(*model, named) : std::nullopt;
   }
   const auto model = LinearizePoint(point_, look, z, settings.point_targets);
   return model ? EvaluateInnovation<4>(model->y, model->H, model->R, point_covariance_)

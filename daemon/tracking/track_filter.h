@@ -51,7 +51,8 @@ struct FilterSettings {
 ///    (heading sigma below 0.25 rad) on. There is no way back: a vehicle that stops keeps its yaw.
 class TrackFilter {
  public:
-  static TrackFilter FromRadar(const RadarLook& look, const RadarMeasurement& measurement);
+  static TrackFilter FromRadar(const RadarLook& look, const RadarMeasurement& measurement,
+                               const FilterSettings& settings);
   static TrackFilter FromCamera(const CameraLook& look, const CameraMeasurement& measurement,
                                 const Fix& fix);
 

@@ -34,8 +34,11 @@ constexpr double kMinDetection = 0.02;
 constexpr double kSureExistence = 0.999999;
 // Standard deviations of the coarse gate; the chi-square gate decides.
 constexpr double kCoarseSigmas = 4.7;
-// Before size is known well, the next vehicle's centre is at least this far away.
+// Published tracks must share one place for so long before one of them goes, others for less.
 constexpr double kDuplicateHold_s = 0.3;
+constexpr double kTentativeHold_s = 0.1;
+// A centre counts as inside of a box this far behind its ends.
+constexpr double kInside_m = 0.5;
 constexpr double kCoastingSince_s = 0.5;
 
 double LargestSigma(const Eigen::Matrix2d& P) {
@@ -53,6 +56,16 @@ bool IsFinite(const CameraMeasurement& z) {
   return std::isfinite(z.azimuth_left_rad) && std::isfinite(z.azimuth_right_rad) &&
          std::isfinite(z.depression_rad) && std::isfinite(z.azimuth_sigma_rad) &&
          std::isfinite(z.depression_sigma_rad);
+}
+
+// Of two tracks of one vehicle the one that stays: published before not, named by a camera before
+// not, older before younger.
+bool IsSenior(const LocalTrack& a, const LocalTrack& b) {
+  if (a.is_confirmed != b.is_confirmed) return a.is_confirmed;
+  const bool a_is_named = a.object_class != ObjectClass::kUnknown;
+  const bool b_is_named = b.object_class != ObjectClass::kUnknown;
+  if (a_is_named != b_is_named) return a_is_named;
+  return a.id < b.id;
 }
 
 double BirthExistence(double births, double clutter) {
@@ -190,8 +203,11 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const double reach_m = kCoarseSigmas * LargestSigma(hidden_[i].filter.position_covariance()) +
                            0.7 * tracks_[i].extent.length_m;
-    candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m,
-                            [&](std::size_t j) { GatePair(i, j, look, measurements[j]); });
+    const bool takes_standing =
+        tracks_[i].camera_hits > 0 || hidden_[i].moving_hits >= config_.confirm_hits;
+    candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m, [&](std::size_t j) {
+      if (takes_standing || !measurements[j].is_static) GatePair(i, j, look, measurements[j]);
+    });
   }
   Associate(measurements.size());
   AbsorbClusters(look, measurements);
@@ -210,6 +226,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
     Hit(i);
     tracks_[i].last_radar = now_;
     ++tracks_[i].radar_hits;
+    if (!z.is_static) ++hidden_[i].moving_hits;
     updates_.push_back({tracks_[i].id, z});
   }
   const std::size_t known = tracks_.size();
@@ -221,11 +238,12 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
       is_taken = Owns(i, look, measurements[j], candidates_[j].p_O);
     }
     if (is_taken) continue;
-    Start(TrackFilter::FromRadar(look, measurements[j]), radar, j,
+    Start(TrackFilter::FromRadar(look, measurements[j], settings_), radar, j,
           candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]));
     if (tracks_.size() > known && hidden_.back().last_hit == now_) {
       tracks_.back().last_radar = now_;
       tracks_.back().radar_hits = 1;
+      hidden_.back().moving_hits = 1;
       updates_.push_back({tracks_.back().id, measurements[j]});
     }
   }
@@ -369,7 +387,7 @@ void Tracker::Conclude(double dt_s) {
     }
     const int hits = track.radar_hits + track.camera_hits;
     if (!track.is_confirmed && track.existence >= config_.confirm_existence &&
-        hits >= config_.confirm_hits &&
+        hits >= config_.confirm_hits && track.camera_hits + hidden.moving_hits >= 2 &&
         LargestSigma(hidden.filter.position_covariance()) <= config_.max_position_sigma_m) {
       track.is_confirmed = true;
     } else if (track.is_confirmed && track.existence < config_.keep_existence) {
@@ -426,13 +444,14 @@ void Tracker::DropDuplicates(double dt_s) {
         const LocalTrack& old = tracks_[j];
         if (std::abs(old.state_O.mean[kX] - young.state_O.mean[kX]) > 0.5 * kLongest_m) break;
         if (hidden_[j].is_dead) continue;
-        const bool is_senior =
-            old.is_confirmed != young.is_confirmed ? old.is_confirmed : old.id < young.id;
-        if (!is_senior) continue;
+        if (!IsSenior(old, young)) continue;
         const Eigen::Vector2d between = Eigen::Rotation2D<double>(-old.state_O.mean[kYaw]) *
                                         (young.state_O.mean.head<2>() - old.state_O.mean.head<2>());
-        const double half_length = 0.25 * (old.extent.length_m + young.extent.length_m);
-        const double half_width = 0.35 * (old.extent.width_m + young.extent.width_m);
+        // Centres nearer than half of what two vehicles need, or one's centre in the other's box.
+        const double half_length = std::max(0.25 * (old.extent.length_m + young.extent.length_m),
+                                            0.5 * old.extent.length_m - kInside_m);
+        const double half_width =
+            std::max(0.35 * (old.extent.width_m + young.extent.width_m), 0.5 * old.extent.width_m);
         if (std::abs(between.x()) > half_length || std::abs(between.y()) > half_width) continue;
         const double difference =
             (hidden_[i].filter.velocity_O() - hidden_[j].filter.velocity_O()).norm();
@@ -441,7 +460,7 @@ void Tracker::DropDuplicates(double dt_s) {
       }
     }
     hidden_[i].overlap_s = overlaps ? hidden_[i].overlap_s + dt_s : 0.0;
-    const double hold_s = tracks_[i].is_confirmed ? kDuplicateHold_s : 0.1;
+    const double hold_s = tracks_[i].is_confirmed ? kDuplicateHold_s : kTentativeHold_s;
     if (overlaps && hidden_[i].overlap_s > hold_s) hidden_[i].is_dead = true;
   }
 }

@@ -68,7 +68,8 @@ using DetectabilityOf = std::function<Detectability(const LocalTrack&)>;
 ///
 /// - A moving radar cluster starts a track, a camera box within camera_birth_range_m too. A
 /// standing
-///   cluster starts none; it keeps alive what a camera named or what was seen moving.
+///   cluster starts none; it keeps alive what a camera named or what was seen moving. Nothing is
+///   published that was not seen twice by a camera or in motion.
 /// - A further cluster inside a tracked vehicle's footprint with its Doppler belongs to that
 /// vehicle:
 ///   it joins the measurement and starts nothing.
@@ -105,6 +106,7 @@ class Tracker {
   struct Hidden {  // What the rest of the program need not see of a track.
     TrackFilter filter;
     Timestamp last_hit{};
+    int moving_hits = 0;     // Radar clusters with a Doppler of their own.
     double overlap_s = 0.0;  // How long an older track has been in the same place.
     std::array<double, 8> class_votes{};
     bool is_dead = false;
