@@ -111,8 +111,13 @@ void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
   const auto claim = intake.Accept(bsm, place);
   if (!claim) return outputs.Refuse(claim.reason(), bsm.stamp);
   // Far senders can meet no track: they are listed, and cost nothing more.
-  if (place.is_known && (claim->p_E - place.p_E).norm() > config.timeline.interest_m) return;
+  if (place.is_known && HorizontalDistance(place.p_E, claim->p_E) > config.timeline.interest_m) {
+    return;
+  }
   timeline.Insert(TimedClaim{*claim, bsm.seq, bias->Estimate(bsm.sender)}, outputs);
+  // Whoever vouches for a vehicle keeps its place in the table, whatever floods it.
+  const TrustState trust = timeline.priority().TrustOf(bsm.sender);
+  intake.Pin(bsm.sender, trust == TrustState::kValidated || trust == TrustState::kBridged);
 }
 
 // What can no longer change goes to the bias estimator, in order.

@@ -38,6 +38,7 @@ void ListSenders(std::span<const SenderTrack> senders, const PriorityPerception&
     claim.p_E = sender.p_E;
     claim.course_E = sender.course_E;
     claim.speed_mps = sender.state.mean[kSpeed];
+    claim.age_s = 0.0;  // The filter has carried it to its reception already.
     const ClaimInOdometry now = alignment.ToOdometry(claim, std::max(at, claim.received));
 
     PublishedTrack line;
@@ -45,7 +46,11 @@ void ListSenders(std::span<const SenderTrack> senders, const PriorityPerception&
     line.track.start = sender.first_received;
     line.track.state_O.mean << now.p_O.x(), now.p_O.y(), now.yaw_rad, now.speed_mps,
         now.yaw_rate_radps, now.accel_mps2;
-    line.track.state_O.covariance = sender.state.covariance;
+    // The sender's plane is east-north; O is turned against it.
+    const Eigen::Matrix2d R_OL = alignment.X_LO().Inverse().rotation();
+    StateMatrix& P = line.track.state_O.covariance = sender.state.covariance;
+    P.topRows<2>() = (R_OL * P.topRows<2>()).eval();
+    P.leftCols<2>() = (P.leftCols<2>() * R_OL.transpose()).eval();
     line.track.state_O.covariance.topLeftCorner<2, 2>() += now.alignment;
     line.track.extent = {.length_m = claim.length_m.value_or(4.5),
                          .width_m = claim.width_m.value_or(1.8),
