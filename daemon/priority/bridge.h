@@ -49,7 +49,7 @@ struct BridgeConfig {
     a.Field("look_s", look_s, {.above = 0.01, .at_most = 5.0});
     a.Field("least_detection", least_detection, {.above = 0.0, .below = 1.0});
     a.Field("false_detection", false_detection, {.at_least = 0.0, .below = 0.5});
-    a.Field("empty_log_ratio", empty_log_ratio, {.below = 0.0, .at_least = -100.0});
+    a.Field("empty_log_ratio", empty_log_ratio, {.at_least = -100.0, .below = 0.0});
     a.Field("contradiction_m", contradiction_m, {.above = 0.5, .at_most = 50.0});
   }
 };
