@@ -13,6 +13,7 @@ namespace v2vouch {
 namespace {
 
 constexpr double kMaxFrameAge_s = 0.5;  // Older tracks are not compared with anything.
+constexpr double kPairReach_m = 20.0;   // No claim, however poor, starts a pair from farther away.
 constexpr double kUnknownAccel_mps2 = 4.0;
 constexpr double kOwnMotionFloor_m = 2.0;
 constexpr double kSeen_s = 0.15;  // Co-observed means: a hit of the same moment, not of support's.
@@ -52,10 +53,9 @@ void PriorityPerception::ObservePairs(Link& link, const ClaimInOdometry& here) {
   const auto prior = PriorOf(link);
   bool has_changed = false;
   for (const Sensed& sensed : sensed_) {
-    const double limit_m = config.interest_m;
-    if ((sensed.track.state_O.mean.head<2>() - here.p_O).squaredNorm() > limit_m * limit_m) {
-      continue;
-    }
+    const double distance_m = (sensed.track.state_O.mean.head<2>() - here.p_O).norm();
+    const bool is_known = pairs_.Find(link.sender, sensed.track.id) != nullptr;
+    if (distance_m > kPairReach_m && !is_known) continue;
     KinematicState state = sensed.track.state_O;
     if (dt_s > 0.0) PredictCtra(state, dt_s, config.filter.motion);
     has_changed |= pairs_.Observe(link.sender, sensed.track.id, Compare(here, state), prior,
