@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/app/daemon.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "daemon/app/latency_meter.h"
+#include "daemon/app/message_queue.h"
+#include "daemon/app/receiver.h"
+#include "daemon/assembly/engine.h"
+#include "daemon/io/socket_figures.h"
+
+namespace v2vouch {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPopTimeout{20};
+constexpr std::chrono::seconds kHousekeeping{1};
+constexpr milliseconds kStatusAtLatest{1500};  // Where message time stands still.
+
+class Daemon {
+ public:
+  Daemon(const DaemonConfig& config, ObjectDetector* detector)
+      : config_(config),
+        engine_(config, std::make_unique<NullBiasEstimator>()),
+        queue_(static_cast<std::size_t>(config.lcm.own_queue),
+               static_cast<std::size_t>(config.lcm.bsm_queue)),
+        detect_(engine_.decoder(), detector, queue_) {
+    const bool has_own_v2v_bus = !config.lcm.v2v_url.empty();
+    std::vector<Receiver::Subscription> own;
+    std::vector<Receiver::Subscription> v2v;
+    for (const wire::InputChannel& channel : engine_.channels()) {
+      const bool is_bsm = channel.kind == wire::InputKind::kBsm;
+      (is_bsm && has_own_v2v_bus ? v2v : own).push_back({channel.name, SinkOf(channel)});
+    }
+    own_bus_ = std::make_unique<Receiver>(config.lcm.url, std::move(own));
+    if (has_own_v2v_bus) {
+      v2v_bus_ = std::make_unique<Receiver>(config.lcm.v2v_url, std::move(v2v));
+    }
+  }
+
+  DaemonSummary Run(const std::function<bool()>& must_stop) {
+    while (!must_stop() && !own_bus_->is_open()) {
+      ReportWaiting();
+      std::this_thread::sleep_for(kPopTimeout);
+    }
+    spdlog::info("event=started version={} inputs={}", V2VOUCH_VERSION, engine_.channels().size());
+    engine_.Start(outbox_);
+    Publish();
+    last_list_ = last_status_ = last_housekeeping_ = Clock::now();
+    while (!must_stop()) {
+      if (const auto arrival = queue_.Pop(kPopTimeout)) Take(*arrival);
+      OnTime(Clock::now());
+    }
+    return Summary();
+  }
+
+ private:
+  LcmBus::Handler SinkOf(const wire::InputChannel& channel) {
+    return
+        [this, channel](std::span<const std::uint8_t> bytes, std::size_t size, Timestamp received) {
+          Arrival arrival;
+          arrival.channel = channel.name;
+          arrival.received = received;
+          arrival.arrived = Clock::now();
+          if (bytes.size() == size) {
+            arrival.content = Arrival::Bytes(bytes.begin(), bytes.end());
+          } else {
+            arrival.content = Reason::kTooLarge;
+          }
+          if (channel.kind == wire::InputKind::kBsm) {
+            queue_.PushBsm(std::move(arrival));
+          } else if (channel.kind == wire::InputKind::kCameraImage) {
+            detect_.Offer(std::move(arrival));
+          } else {
+            queue_.PushOwn(std::move(arrival));
+          }
+        };
+  }
+
+  void Take(const Arrival& arrival) {
+    const auto started = Clock::now();
+    queue_wait_.Add(started - arrival.arrived);
+    outbox_.Clear();
+    if (const auto* bytes = std::get_if<Arrival::Bytes>(&arrival.content)) {
+      engine_.OnMessage(arrival.channel, *bytes, arrival.received, outbox_);
+    } else if (const auto* boxes = std::get_if<CameraDetections>(&arrival.content)) {
+      engine_.OnDetections(arrival.channel, *boxes, outbox_);
+    } else {
+      engine_.OnRefused(arrival.channel, std::get<Reason>(arrival.content));
+    }
+    step_.Add(Clock::now() - started);
+    Publish();
+    if (engine_.has_lists()) {
+      const auto now = Clock::now();
+      input_to_list_.Add(now - arrival.arrived);
+      last_list_ = now;
+      stale_round_ = 0;
+      ++summary_.lists;
+    }
+  }
+
+  // Lists go on without frames, marked stale; a status comes even where message time stands still.
+  void OnTime(Clock::time_point now) {
+    const Duration stale_after = FromSeconds(config_.perception.timeline.stale_after_s);
+    if (now - last_list_ >= stale_after * (stale_round_ + 1)) {
+      ++stale_round_;
+      outbox_.Clear();
+      engine_.PublishStale(std::chrono::duration_cast<Duration>(now - last_list_), outbox_);
+      if (!outbox_.messages().empty()) ++summary_.stale_lists;
+      Publish();
+    }
+    if (now - last_status_ >= kStatusAtLatest) {
+      outbox_.Clear();
+      engine_.PublishStatus(outbox_);
+      Publish();
+    }
+    if (now - last_housekeeping_ >= kHousekeeping) {
+      last_housekeeping_ = now;
+      RefreshFigures();
+      LogRefusals();
+    }
+  }
+
+  void Publish() {
+    for (const Outbox::Message& message : outbox_.messages()) {
+      own_bus_->Publish(message.channel, message.bytes);
+      if (message.channel == config_.lcm.channels.status) last_status_ = Clock::now();
+    }
+  }
+
+  void RefreshFigures() {
+    const SocketFigures sockets = ReadSocketFigures();
+    engine_.SetShellFigures(
+        {.queue_drops_own = queue_.own_drops(),
+         .queue_drops_bsm = queue_.bsm_drops(),
+         .kernel_drops = sockets.kernel_drops,
+         .receive_buffer_bytes = sockets.receive_buffer_bytes,
+         .latencies = {queue_wait_.Report(), step_.Report(), input_to_list_.Report()}});
+  }
+
+  // One line per reason and second at most.
+  void LogRefusals() {
+    for (std::size_t i = 0; i < kReasonCount; ++i) {
+      const std::uint64_t total = engine_.refusals()[i];
+      if (total == logged_[i]) continue;
+      spdlog::warn("event=refused reason={} count={} total={}", ReasonName(static_cast<Reason>(i)),
+                   total - logged_[i], total);
+      logged_[i] = total;
+    }
+    const std::int64_t drops = queue_.own_drops() + queue_.bsm_drops();
+    if (drops != logged_drops_) {
+      spdlog::warn("event=queue_full own={} bsm={}", queue_.own_drops(), queue_.bsm_drops());
+      logged_drops_ = drops;
+    }
+  }
+
+  void ReportWaiting() {
+    const int failures = own_bus_->failures();
+    if (failures > 0 && failures != reported_failures_) {
+      spdlog::warn("event=no_lcm url=\"{}\" attempt={} hint=\"is there a multicast route?\"",
+                   config_.lcm.url, failures);
+      reported_failures_ = failures;
+    }
+  }
+
+  DaemonSummary Summary() {
+    summary_.accepted = engine_.accepted();
+    summary_.queue_drops_own = queue_.own_drops();
+    summary_.queue_drops_bsm = queue_.bsm_drops();
+    summary_.refused = engine_.refusals();
+    summary_.digest_local = engine_.digest_local();
+    summary_.digest_priority = engine_.digest_priority();
+    return summary_;
+  }
+
+  DaemonConfig config_;
+  Engine engine_;
+  Outbox outbox_;
+  MessageQueue queue_;
+  DetectThread detect_;
+  LatencyMeter queue_wait_{"queue_wait"};
+  LatencyMeter step_{"step"};
+  LatencyMeter input_to_list_{"input_to_list"};
+  DaemonSummary summary_;
+  ReasonCounts logged_{};
+  std::int64_t logged_drops_ = 0;
+  int reported_failures_ = 0;
+  int stale_round_ = 0;
+  Clock::time_point last_list_{};
+  Clock::time_point last_status_{};
+  Clock::time_point last_housekeeping_{};
+  // Last, so that they stop before anything they push into is gone.
+  std::unique_ptr<Receiver> own_bus_;
+  std::unique_ptr<Receiver> v2v_bus_;
+};
+
+}  // namespace
+
+DaemonSummary RunDaemon(const DaemonConfig& config, ObjectDetector* detector,
+                        const std::function<bool()>& must_stop) {
+  return Daemon(config, detector).Run(must_stop);
+}
+
+}  // namespace v2vouch

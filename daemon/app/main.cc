@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// v2vouchd: the perception daemon.
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <iostream>
+
+#include "daemon/app/daemon.h"
+#include "daemon/io/lcm_bus.h"
+
+namespace {
+
+constexpr char kExamples[] = R"(
+Examples:
+  v2vouchd --config vehicle.yaml
+  v2vouchd -l 'udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304' \
+           --v2v-lcm-url 'udpm://239.255.76.68:7668?ttl=0'
+  v2vouchd --config vehicle.yaml --print-config
+
+Publishes TRACKS_LOCAL, TRACKS_PRIORITY, TRACKS_V2V, MISBEHAVIOR, CALIBRATION, V2VOUCH_CONFIG and,
+once a second, V2VOUCH_STATUS. Ends on Ctrl-C or SIGTERM.
+
+Exit codes: 0 ended on request; 1 something failed while running; 2 usage or configuration.)";
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+void RequestStop(int) { stop_requested = 1; }
+
+void PrintSummary(const v2vouch::DaemonSummary& summary) {
+  spdlog::info(
+      "event=stopped accepted={} lists={} stale_lists={} queue_drops_own={} "
+      "queue_drops_bsm={} digest_local={} digest_priority={}",
+      summary.accepted, summary.lists, summary.stale_lists, summary.queue_drops_own,
+      summary.queue_drops_bsm, summary.digest_local, summary.digest_priority);
+  for (std::size_t i = 0; i < v2vouch::kReasonCount; ++i) {
+    if (summary.refused[i] == 0) continue;
+    spdlog::info("event=refused_in_all reason={} total={}",
+                 v2vouch::ReasonName(static_cast<v2vouch::Reason>(i)), summary.refused[i]);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string config_path;
+  std::string url;
+  std::string v2v_url;
+  bool prints_config = false;
+  CLI::App app("Tells the car which vehicles are around it, and which it may rely on.");
+  app.name("v2vouchd");
+  app.footer(kExamples);
+  app.set_version_flag("--version", std::string("v2vouchd ") + V2VOUCH_VERSION);
+  app.add_option("--config", config_path, "Vehicle description (default: the shipped vehicle)");
+  app.add_option("-l,--lcm-url", url,
+                 "LCM URL (default: lcm.url of the configuration, else "
+                 "LCM_DEFAULT_URL)");
+  app.add_option("--v2v-lcm-url", v2v_url, "LCM URL of BSMs, on a port of its own");
+  app.add_flag("--print-config", prints_config, "Print the effective configuration and end");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+
+  v2vouch::DaemonConfig config;
+  std::vector<std::string> problems;
+  v2vouch::LoadDaemonConfig(config_path, config, problems);
+  if (!url.empty()) config.lcm.url = url;
+  if (!v2v_url.empty()) config.lcm.v2v_url = v2v_url;
+  for (const std::string& given : {config.lcm.url, config.lcm.v2v_url}) {
+    if (!v2vouch::IsLcmUrl(given))
+      problems.push_back("LCM URL \"" + given + "\": unknown provider");
+  }
+  for (const std::string& problem : problems) std::cerr << problem << '\n';
+  if (!problems.empty()) return 2;
+  if (prints_config) {
+    std::cout << v2vouch::PrintDaemonConfig(config);
+    return 0;
+  }
+
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("v2vouchd"));
+  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e level=%l %v");
+  std::signal(SIGINT, RequestStop);
+  std::signal(SIGTERM, RequestStop);
+  try {
+    PrintSummary(v2vouch::RunDaemon(config, nullptr, [] { return stop_requested != 0; }));
+  } catch (const std::exception& error) {
+    spdlog::critical("event=failed what=\"{}\"", error.what());
+    return 1;
+  }
+  return 0;
+}

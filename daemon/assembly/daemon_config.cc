@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/assembly/daemon_config.h"
+
+#include <algorithm>
+#include <map>
+
+#include "daemon/config/yaml_reader.h"
+#include "daemon/config/yaml_writer.h"
+#include "daemon/wire/input_decoder.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr std::size_t kMaxChannelLength = 63;  // LCM's own limit.
+
+bool IsChannelName(const std::string& name) {
+  const auto is_plain = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.' || c == '/';
+  };
+  return !name.empty() && name.size() <= kMaxChannelLength &&
+         std::all_of(name.begin(), name.end(), is_plain);
+}
+
+class Checks {
+ public:
+  Checks(const std::string& name, std::vector<std::string>& problems)
+      : name_(name), problems_(problems) {}
+
+  void Channel(const std::string& key, const std::string& channel) {
+    if (!IsChannelName(channel)) {
+      Problem(key, "channel \"" + channel.substr(0, 80) +
+                       "\": must have 1 to 63 letters, digits, or _ - . /");
+      return;
+    }
+    const auto [entry, is_new] = channels_.emplace(channel, key);
+    if (!is_new) Problem(key, "channel " + channel + ": is that of " + entry->second + " already");
+  }
+
+  void Problem(const std::string& key, const std::string& what) {
+    problems_.push_back(name_ + ": " + key + ": " + what);
+  }
+
+ private:
+  const std::string& name_;
+  std::vector<std::string>& problems_;
+  std::map<std::string, std::string> channels_;
+};
+
+std::string KeyOf(const wire::InputChannel& channel) {
+  const std::string index = "[" + std::to_string(channel.sensor) + "].name";
+  switch (channel.kind) {
+    case wire::InputKind::kRadar:
+      return "vehicle.radars" + index;
+    case wire::InputKind::kCameraBoxes:
+    case wire::InputKind::kCameraImage:
+      return "vehicle.cameras" + index;
+    case wire::InputKind::kEgoMotion:
+      return "lcm.channels.ego_motion";
+    case wire::InputKind::kGnss:
+      return "lcm.channels.ego_gnss";
+    case wire::InputKind::kBsm:
+      break;
+  }
+  return "lcm.channels.bsm";
+}
+
+}  // namespace
+
+void CheckConfig(const DaemonConfig& config, const std::string& name,
+                 std::vector<std::string>& problems) {
+  Checks checks(name, problems);
+  const VehicleConfig& vehicle = config.perception.vehicle;
+  const wire::ChannelNames& names = config.lcm.channels;
+
+  for (const auto& channel : wire::InputChannels(vehicle, names)) {
+    checks.Channel(KeyOf(channel), channel.name);
+  }
+  for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
+    if (vehicle.cameras[i].source != CameraSource::kImage) continue;
+    checks.Channel("vehicle.cameras[" + std::to_string(i) + "].name",
+                   names.camera_prefix + vehicle.cameras[i].name + names.detected_suffix);
+  }
+  checks.Channel("lcm.channels.tracks_local", names.tracks_local);
+  checks.Channel("lcm.channels.tracks_priority", names.tracks_priority);
+  checks.Channel("lcm.channels.tracks_v2v", names.tracks_v2v);
+  checks.Channel("lcm.channels.calibration", names.calibration);
+  checks.Channel("lcm.channels.misbehavior", names.misbehavior);
+  checks.Channel("lcm.channels.status", names.status);
+  checks.Channel("lcm.channels.config", names.config);
+
+  constexpr std::size_t kMaxSensors = 32;
+  if (vehicle.radars.size() > kMaxSensors) {
+    checks.Problem("vehicle.radars", "must be at most 32");
+  }
+  if (vehicle.cameras.size() > kMaxSensors) {
+    checks.Problem("vehicle.cameras", "must be at most 32");
+  }
+  for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
+    if (vehicle.radars[i].min_range_m >= vehicle.radars[i].max_range_m) {
+      checks.Problem("vehicle.radars[" + std::to_string(i) + "].min_range_m",
+                     "must be below max_range_m");
+    }
+  }
+  for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
+    const std::size_t count = vehicle.cameras[i].distortion.size();
+    if (count != 0 && count != 4 && count != 5) {
+      checks.Problem("vehicle.cameras[" + std::to_string(i) + "].distortion",
+                     "must hold k1, k2, p1, p2 and perhaps k3, or nothing");
+    }
+  }
+  const IntakeConfig& v2v = config.perception.v2v;
+  if (v2v.min_position_sigma_m > v2v.max_position_sigma_m) {
+    checks.Problem("v2v.min_position_sigma_m", "must be at most max_position_sigma_m");
+  }
+}
+
+bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
+                      std::vector<std::string>& problems) {
+  if (!path.empty()) config::Load(path, config, problems);
+  CheckConfig(config, path.empty() ? "built-in configuration" : path, problems);
+  return problems.empty();
+}
+
+std::string PrintDaemonConfig(const DaemonConfig& config) { return config::Print(config); }
+
+}  // namespace v2vouch

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/base/visit.h"
+#include "daemon/pipeline/perception_config.h"
+#include "daemon/wire/channels.h"
+
+namespace v2vouch {
+
+/// How the daemon talks. Replay uses the channel names only.
+struct LcmConfig {
+  std::string url;       ///< "" = the environment's LCM_DEFAULT_URL, else LCM's own default.
+  std::string v2v_url;   ///< A port of its own for BSMs (recommended); "" = the same as `url`.
+  int own_queue = 256;   ///< Messages of own sensors that may wait; the oldest is dropped.
+  int bsm_queue = 4096;  ///< The same for BSMs.
+  wire::ChannelNames channels;
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Text("url", url);
+    a.Text("v2v_url", v2v_url);
+    a.Field("own_queue", own_queue, {.at_least = 8, .at_most = 65536});
+    a.Field("bsm_queue", bsm_queue, {.at_least = 8, .at_most = 65536});
+    a.Field("channels", channels);
+  }
+};
+
+/// Everything in vehicle.yaml. The defaults are the shipped vehicle (daemon/config/vehicle.yaml).
+struct DaemonConfig {
+  PerceptionConfig perception;
+  LcmConfig lcm;
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    perception.Visit(a);
+    a.Field("lcm", lcm);
+  }
+};
+
+/// What one field's bounds cannot say: names that clash or cannot be channel names, ranges the
+/// wrong way round.
+void CheckConfig(const DaemonConfig& config, const std::string& name,
+                 std::vector<std::string>& problems);
+
+/// Defaults where `path` is empty. @return false with all problems named.
+bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
+                      std::vector<std::string>& problems);
+
+/// The effective configuration as YAML.
+std::string PrintDaemonConfig(const DaemonConfig& config);
+
+}  // namespace v2vouch

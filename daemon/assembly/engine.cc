@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/assembly/engine.h"
+
+#include <utility>
+
+#include "daemon/wire/output_encoder.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr Duration kStatusPeriod = std::chrono::seconds(1);
+
+// Diagnostics that report something else than "this input was not taken".
+bool RefusesTheInput(Reason reason) {
+  return reason != Reason::kClockRestart && reason != Reason::kTrackNumerics &&
+         reason != Reason::kSenderNumerics && reason != Reason::kTrackTableFull;
+}
+
+wire::CalibrationInForce CalibrationOf(const VehicleConfig& vehicle) {
+  wire::CalibrationInForce calibration;
+  calibration.source = "configuration";
+  const auto add = [&](const std::string& sensor, const char* parameter, double value) {
+    calibration.parameters.push_back({sensor + "." + parameter, value, kNaN, "PRIOR"});
+  };
+  for (const RadarConfig& radar : vehicle.radars) {
+    const std::string sensor = "radar_" + radar.name;
+    add(sensor, "x_m", radar.x_m);
+    add(sensor, "y_m", radar.y_m);
+    add(sensor, "yaw_rad", radar.yaw_rad);
+    add(sensor, "range_offset_m", radar.range_offset_m);
+    add(sensor, "clock_offset_s", radar.clock_offset_s);
+  }
+  for (const CameraConfig& camera : vehicle.cameras) {
+    const std::string sensor = "camera_" + camera.name;
+    add(sensor, "x_m", camera.x_m);
+    add(sensor, "y_m", camera.y_m);
+    add(sensor, "z_m", camera.z_m);
+    add(sensor, "yaw_rad", camera.yaw_rad);
+    add(sensor, "pitch_rad", camera.pitch_rad);
+    add(sensor, "roll_rad", camera.roll_rad);
+    add(sensor, "clock_offset_s", camera.clock_offset_s);
+  }
+  return calibration;
+}
+
+}  // namespace
+
+Engine::Engine(const DaemonConfig& config, std::unique_ptr<BiasEstimator> bias)
+    : config_(config),
+      decoder_(config.perception.vehicle, config.lcm.channels),
+      perception_(config.perception, std::move(bias)),
+      watch_(decoder_.channels()) {
+  status_.version = V2VOUCH_VERSION;
+  status_.calibration = "configuration";
+}
+
+void Engine::Start(Outbox& outbox) {
+  const wire::ChannelNames& names = config_.lcm.channels;
+  wire::EncodeText({}, "configuration", PrintDaemonConfig(config_), outbox.Add(names.config));
+  wire::EncodeCalibration(CalibrationOf(config_.perception.vehicle), outbox.Add(names.calibration));
+}
+
+void Engine::OnMessage(std::string_view channel, std::span<const std::uint8_t> bytes,
+                       Timestamp received, Outbox& outbox) {
+  has_lists_ = false;
+  const auto index = decoder_.Find(channel);
+  if (!index) return Refuse(Reason::kUnknownChannel);
+  watch_.Received(*index);
+  const auto decoded = decoder_.Decode(*index, bytes, received, refusals_);
+  if (!decoded) return Refuse(decoded.reason());
+  if (const auto* input = std::get_if<Input>(&*decoded)) {
+    Take(*index, *input, outbox);
+  } else {
+    Refuse(Reason::kNoDetector);
+  }
+}
+
+void Engine::OnDetections(std::string_view image_channel, const CameraDetections& detections,
+                          Outbox& outbox) {
+  has_lists_ = false;
+  const auto index = decoder_.Find(image_channel);
+  if (!index) return Refuse(Reason::kUnknownChannel);
+  watch_.Received(*index);
+  const wire::ChannelNames& names = config_.lcm.channels;
+  const std::string& sensor =
+      config_.perception.vehicle.cameras[static_cast<std::size_t>(detections.camera)].name;
+  wire::EncodeDetections(detections, sensor,
+                         outbox.Add(names.camera_prefix + sensor + names.detected_suffix));
+  Take(*index, detections, outbox);
+}
+
+void Engine::OnRefused(std::string_view channel, Reason reason) {
+  has_lists_ = false;
+  if (const auto index = decoder_.Find(channel)) watch_.Received(*index);
+  Refuse(reason);
+}
+
+void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
+  perception_.Step(input, outputs_);
+  bool is_accepted = true;
+  for (const Diagnostic& diagnostic : outputs_.diagnostics) {
+    Refuse(diagnostic.reason);
+    if (diagnostic.reason == Reason::kClockRestart) {
+      watch_.Restart();
+      last_status_.reset();
+    }
+    if (RefusesTheInput(diagnostic.reason)) is_accepted = false;
+  }
+  const MessageHeader& header = HeaderOf(input);
+  if (is_accepted) watch_.Accepted(channel, header.stamp, header.seq);
+
+  if (outputs_.has_lists) PublishLists(outbox);
+  for (const MisbehaviorReport& report : outputs_.reports) {
+    wire::EncodeReport(report, outbox.Add(config_.lcm.channels.misbehavior));
+  }
+  const auto now = watch_.newest_own();
+  if (now && (!last_status_ || *now - *last_status_ >= kStatusPeriod)) PublishStatus(outbox);
+}
+
+void Engine::PublishLists(Outbox& outbox) {
+  const wire::ChannelNames& names = config_.lcm.channels;
+  has_lists_ = true;
+  std::vector<std::uint8_t>& local = outbox.Add(names.tracks_local);
+  wire::EncodeList(outputs_.local, local);
+  digest_local_.Add(local);
+  std::vector<std::uint8_t>& priority = outbox.Add(names.tracks_priority);
+  wire::EncodeList(outputs_.priority, priority);
+  digest_priority_.Add(priority);
+  if (outputs_.has_v2v_list) wire::EncodeList(outputs_.v2v, outbox.Add(names.tracks_v2v));
+  status_.local_tracks = static_cast<int>(outputs_.local.tracks.size());
+  status_.priority_tracks = static_cast<int>(outputs_.priority.tracks.size());
+}
+
+void Engine::PublishStale(Duration silence, Outbox& outbox) const {
+  const Timestamp newest = perception_.newest_frame();
+  if (newest == Timestamp{}) return;
+  Outputs predicted;
+  perception_.PredictedLists(newest + silence, predicted);
+  if (!predicted.has_lists) return;
+  const wire::ChannelNames& names = config_.lcm.channels;
+  wire::EncodeList(predicted.local, outbox.Add(names.tracks_local));
+  wire::EncodeList(predicted.priority, outbox.Add(names.tracks_priority));
+}
+
+void Engine::PublishStatus(Outbox& outbox) {
+  last_status_ = watch_.newest_own();
+  status_.stamp = watch_.newest_own().value_or(Timestamp{});
+  ++status_.seq;
+  watch_.Report(status_.inputs);
+  status_.refusals = refusals_;
+  status_.queue_drops_own = figures_.queue_drops_own;
+  status_.queue_drops_bsm = figures_.queue_drops_bsm;
+  status_.kernel_drops = figures_.kernel_drops;
+  status_.receive_buffer_bytes = figures_.receive_buffer_bytes;
+  status_.latencies = figures_.latencies;
+  status_.v2v_senders = perception_.sender_count();
+  status_.ego_gnss_suspect = perception_.ego_gnss_suspect();
+  status_.digest_inputs = watch_.accepted();
+  status_.digest_local = digest_local_.Hex();
+  status_.digest_priority = digest_priority_.Hex();
+  wire::EncodeStatus(status_, outbox.Add(config_.lcm.channels.status));
+}
+
+}  // namespace v2vouch

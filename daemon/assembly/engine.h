@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/assembly/daemon_config.h"
+#include "daemon/assembly/input_watch.h"
+#include "daemon/base/sha256.h"
+#include "daemon/data/bias.h"
+#include "daemon/pipeline/perception.h"
+#include "daemon/wire/input_decoder.h"
+#include "daemon/wire/status.h"
+
+namespace v2vouch {
+
+/// Messages to publish, in order. Their buffers are reused.
+class Outbox {
+ public:
+  struct Message {
+    std::string channel;
+    std::vector<std::uint8_t> bytes;
+  };
+
+  void Clear() { count_ = 0; }
+  /// The next message's bytes, to be filled.
+  std::vector<std::uint8_t>& Add(std::string_view channel) {
+    if (count_ == messages_.size()) messages_.emplace_back();
+    Message& message = messages_[count_++];
+    message.channel.assign(channel);
+    return message.bytes;
+  }
+  [[nodiscard]] std::span<const Message> messages() const { return {messages_.data(), count_}; }
+
+ private:
+  std::vector<Message> messages_;
+  std::size_t count_ = 0;
+};
+
+/// What only a live shell can know; all zero or unknown in replay, so that its status is a function
+/// of the log.
+struct ShellFigures {
+  std::int64_t queue_drops_own = 0;
+  std::int64_t queue_drops_bsm = 0;
+  std::int64_t kernel_drops = -1;
+  std::int64_t receive_buffer_bytes = -1;
+  std::vector<wire::StageLatency> latencies;
+};
+
+/// Bytes in, bytes out: decode, perception, encode, with every refusal counted. The daemon and the
+/// replay program both are a shell round this; it reads no clock and starts no thread, so the same
+/// messages in the same order give the same bytes.
+class Engine {
+ public:
+  Engine(const DaemonConfig& config, std::unique_ptr<BiasEstimator> bias);
+
+  /// V2VOUCH_CONFIG and CALIBRATION, once at start. Each call below adds to the outbox.
+  void Start(Outbox& outbox);
+
+  /// One received message. TRACKS_* after an own-sensor frame, MISBEHAVIOR, and V2VOUCH_STATUS when
+  /// a second of message time has passed.
+  void OnMessage(std::string_view channel, std::span<const std::uint8_t> bytes, Timestamp received,
+                 Outbox& outbox);
+  /// What our detector saw in a picture of channel `image_channel`: published and used.
+  void OnDetections(std::string_view image_channel, const CameraDetections& detections,
+                    Outbox& outbox);
+  /// A message refused on its way here, e.g. a picture that gave no detections.
+  void OnRefused(std::string_view channel, Reason reason);
+
+  /// Copies of the lists predicted by `silence` past the newest frame, marked stale; in no digest.
+  /// Nothing before the first frame.
+  void PublishStale(Duration silence, Outbox& outbox) const;
+  void PublishStatus(Outbox& outbox);
+
+  void SetShellFigures(const ShellFigures& figures) { figures_ = figures; }
+
+  [[nodiscard]] std::span<const wire::InputChannel> channels() const { return decoder_.channels(); }
+  [[nodiscard]] const wire::InputDecoder& decoder() const { return decoder_; }
+  [[nodiscard]] const ReasonCounts& refusals() const { return refusals_; }
+  [[nodiscard]] std::int64_t accepted() const { return watch_.accepted(); }
+  [[nodiscard]] std::string digest_local() const { return digest_local_.Hex(); }
+  [[nodiscard]] std::string digest_priority() const { return digest_priority_.Hex(); }
+  /// Whether the last OnMessage or OnDetections gave new lists.
+  [[nodiscard]] bool has_lists() const { return has_lists_; }
+
+ private:
+  void Take(std::size_t channel, const Input& input, Outbox& outbox);
+  void PublishLists(Outbox& outbox);
+  void Refuse(Reason reason) { ++refusals_[static_cast<std::size_t>(reason)]; }
+
+  DaemonConfig config_;
+  wire::InputDecoder decoder_;
+  Perception perception_;
+  InputWatch watch_;
+  Outputs outputs_;
+  ReasonCounts refusals_{};
+  Sha256 digest_local_;
+  Sha256 digest_priority_;
+  ShellFigures figures_;
+  wire::Status status_;
+  std::optional<Timestamp> last_status_;
+  bool has_lists_ = false;
+};
+
+}  // namespace v2vouch

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "daemon/replay/replay.h"
+
+namespace v2vouch {
+namespace {
+
+struct Quantiles {
+  double p50 = 0.0;
+  double p99 = 0.0;
+  double max = 0.0;
+};
+
+// Nearest-rank quantiles.
+Quantiles QuantilesOf(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto rank = [&](double share) {
+    const auto n = static_cast<double>(values.size());
+    return values[static_cast<std::size_t>(std::ceil(share * n)) - 1];
+  };
+  return {rank(0.50), rank(0.99), values.back()};
+}
+
+std::string Line(const char* format, double value) {
+  char text[160];
+  std::snprintf(text, sizeof(text), format, value);
+  return std::string(text) + "\n";
+}
+
+std::string CountLine(const std::string& what, std::int64_t count) {
+  return what + std::string(what.size() < 22 ? 22 - what.size() : 1, ' ') + std::to_string(count) +
+         "\n";
+}
+
+}  // namespace
+
+std::string JsonReport(const ReplayResult& result) {
+  const Quantiles step = QuantilesOf(result.step_us);
+  nlohmann::ordered_json refused = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < kReasonCount; ++i) {
+    if (result.refused[i] > 0) {
+      refused[std::string(ReasonName(static_cast<Reason>(i)))] = result.refused[i];
+    }
+  }
+  const nlohmann::ordered_json report = {
+      {"events", result.events},
+      {"inputs", result.inputs},
+      {"accepted", result.accepted},
+      {"copied", result.copied},
+      {"old_outputs", result.old_outputs},
+      {"damaged", result.damaged},
+      {"lists", result.lists},
+      {"log_seconds", result.log_seconds},
+      {"wall_seconds", result.wall_seconds},
+      {"realtime_factor", result.realtime_factor()},
+      {"step_us", {{"p50", step.p50}, {"p99", step.p99}, {"max", step.max}}},
+      {"refused", refused},
+      {"digest_local", result.digest_local},
+      {"digest_priority", result.digest_priority}};
+  return report.dump() + "\n";
+}
+
+std::string TextReport(const ReplayResult& result) {
+  const Quantiles step = QuantilesOf(result.step_us);
+  std::string text;
+  text += CountLine("events", result.events);
+  text += CountLine("inputs", result.inputs);
+  text += CountLine("accepted", result.accepted);
+  text += CountLine("passed through", result.copied);
+  if (result.old_outputs > 0) text += CountLine("old outputs dropped", result.old_outputs);
+  if (result.damaged > 0) text += CountLine("damaged stretches", result.damaged);
+  text += CountLine("lists", result.lists);
+  text += Line("log                   %.2f s", result.log_seconds);
+  text += Line("wall                  %.3f s", result.wall_seconds);
+  text += Line("real time             x %.0f", result.realtime_factor());
+  text += Line("step p50              %.1f us", step.p50);
+  text += Line("step p99              %.1f us", step.p99);
+  text += Line("step max              %.1f us", step.max);
+  for (std::size_t i = 0; i < kReasonCount; ++i) {
+    if (result.refused[i] == 0) continue;
+    text += CountLine("refused " + std::string(ReasonName(static_cast<Reason>(i))),
+                      static_cast<std::int64_t>(result.refused[i]));
+  }
+  text += "digest LOCAL          " + result.digest_local + "\n";
+  text += "digest PRIORITY       " + result.digest_priority + "\n";
+  return text;
+}
+
+}  // namespace v2vouch
