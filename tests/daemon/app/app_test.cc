@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <mutex>
+
+#include "daemon/app/detect_thread.h"
+#include "daemon/app/latency_meter.h"
+#include "daemon/app/message_queue.h"
+#include "daemon/wire/codec.h"
+#include "v2vouch/camera_image_t.hpp"
+
+namespace v2vouch {
+namespace {
+
+using namespace std::chrono_literals;
+
+Arrival Named(const std::string& channel) {
+  Arrival arrival;
+  arrival.channel = channel;
+  return arrival;
+}
+
+TEST(MessageQueue, PopsInOrderOfArrivalOverBothQueues) {
+  MessageQueue queue(10, 10);
+  queue.PushOwn(Named("a"));
+  queue.PushBsm(Named("b"));
+  queue.PushBsm(Named("c"));
+  queue.PushOwn(Named("d"));
+  for (const char* expected : {"a", "b", "c", "d"}) EXPECT_EQ(queue.Pop(0ms)->channel, expected);
+  EXPECT_FALSE(queue.Pop(0ms));
+}
+
+TEST(MessageQueue, FloodOfBsmsDropsOldBsmsAndNoOwnSensor) {
+  MessageQueue queue(4, 3);
+  queue.PushOwn(Named("radar"));
+  for (int i = 0; i < 10; ++i) queue.PushBsm(Named("bsm" + std::to_string(i)));
+  EXPECT_EQ(queue.own_drops(), 0);
+  EXPECT_EQ(queue.bsm_drops(), 7);
+  for (const char* expected : {"radar", "bsm7", "bsm8", "bsm9"}) {
+    EXPECT_EQ(queue.Pop(0ms)->channel, expected);
+  }
+}
+
+TEST(LatencyMeter, ReportsNearestRankAndStartsAgain) {
+  LatencyMeter meter("step");
+  for (int i = 1; i <= 200; ++i) meter.Add(std::chrono::microseconds(i));
+  const auto latency = meter.Report();
+  EXPECT_EQ(latency.stage, "step");
+  EXPECT_DOUBLE_EQ(latency.p50_us, 100.0);
+  EXPECT_DOUBLE_EQ(latency.p99_us, 198.0);
+  EXPECT_DOUBLE_EQ(latency.max_us, 200.0);
+  EXPECT_EQ(meter.Report().max_us, 0.0);
+}
+
+VehicleConfig VehicleWithPictures() {
+  VehicleConfig vehicle;
+  vehicle.cameras[0].source = CameraSource::kImage;
+  return vehicle;
+}
+
+Arrival Picture(std::int64_t seq) {
+  camera_image_t image{};
+  image.utime = 1'700'000'000'000'000;
+  image.seq = seq;
+  image.sensor = "FRONT";
+  image.width_px = image.height_px = 2;
+  image.encoding = "mono8";
+  image.data.assign(4, 0);
+  image.num_bytes = 4;
+  Arrival arrival = Named("CAMERA_FRONT_IMAGE");
+  Arrival::Bytes bytes;
+  wire::Encode(image, bytes);
+  arrival.content = bytes;
+  return arrival;
+}
+
+// Sees one box in every picture once it may go on.
+class GatedDetector final : public ObjectDetector {
+ public:
+  Result<CameraDetections> Detect(const wire::CameraImage& image) override {
+    std::unique_lock lock(mutex_);
+    ++looks_;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return is_open_; });
+    if (image.seq == 99) throw std::runtime_error("cannot read this picture");
+    CameraDetections detections;
+    static_cast<MessageHeader&>(detections) = image;
+    detections.camera = image.camera;
+    detections.boxes.resize(1);
+    return detections;
+  }
+  void WaitForLook() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return looks_ > 0; });
+  }
+  void Open() {
+    const std::lock_guard lock(mutex_);
+    is_open_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int looks_ = 0;
+  bool is_open_ = false;
+};
+
+TEST(DetectThread, NewestPictureWinsWhileTheDetectorIsBusy) {
+  const wire::InputDecoder decoder(VehicleWithPictures(), wire::ChannelNames{});
+  MessageQueue queue(10, 10);
+  GatedDetector detector;
+  DetectThread thread(decoder, &detector, queue);
+  thread.Offer(Picture(1));
+  detector.WaitForLook();
+  for (const int seq : {2, 3, 4}) thread.Offer(Picture(seq));
+  EXPECT_EQ(thread.replaced(), 2);
+  detector.Open();
+  for (const int seq : {1, 4}) {
+    const auto arrival = queue.Pop(10s);
+    ASSERT_TRUE(arrival);
+    const auto* detections = std::get_if<CameraDetections>(&arrival->content);
+    ASSERT_NE(detections, nullptr);
+    EXPECT_EQ(detections->seq, seq);
+  }
+}
+
+TEST(DetectThread, RefusalsAndExceptionsBecomeReasons) {
+  const wire::InputDecoder decoder(VehicleWithPictures(), wire::ChannelNames{});
+  MessageQueue queue(10, 10);
+  const auto reason_of = [&](ObjectDetector* detector, Arrival picture) {
+    DetectThread thread(decoder, detector, queue);
+    thread.Offer(std::move(picture));
+    const auto arrival = queue.Pop(10s);
+    return arrival ? std::get<Reason>(arrival->content) : Reason::kCount;
+  };
+  EXPECT_EQ(reason_of(nullptr, Picture(1)), Reason::kNoDetector);
+  GatedDetector detector;
+  detector.Open();
+  EXPECT_EQ(reason_of(&detector, Picture(99)), Reason::kBadImage);
+  Arrival damaged = Picture(1);
+  std::get<Arrival::Bytes>(damaged.content).pop_back();
+  EXPECT_EQ(reason_of(&detector, damaged), Reason::kBadLength);
+}
+
+}  // namespace
+}  // namespace v2vouch

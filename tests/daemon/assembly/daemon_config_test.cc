@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/assembly/daemon_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace v2vouch {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::vector<std::string> ProblemsOf(const DaemonConfig& config) {
+  std::vector<std::string> problems;
+  CheckConfig(config, "a.yaml", problems);
+  return problems;
+}
+
+TEST(DaemonConfig, DefaultsAreGood) { EXPECT_THAT(ProblemsOf(DaemonConfig{}), IsEmpty()); }
+
+TEST(DaemonConfig, ShippedVehicleIsTheDefault) {
+  DaemonConfig shipped;
+  shipped.perception.vehicle.radars.clear();  // So that equality comes from the file.
+  shipped.perception.vehicle.length_m = 9.0;
+  shipped.lcm.own_queue = 9;
+  std::vector<std::string> problems;
+  EXPECT_TRUE(LoadDaemonConfig("daemon/config/vehicle.yaml", shipped, problems))
+      << testing::PrintToString(problems);
+  EXPECT_EQ(PrintDaemonConfig(shipped), PrintDaemonConfig(DaemonConfig{}));
+}
+
+// A key that is missing would keep its default silently; the shipped file is the documentation.
+TEST(DaemonConfig, ShippedVehicleNamesEveryKey) {
+  std::ifstream file("daemon/config/vehicle.yaml");
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  std::istringstream lines(PrintDaemonConfig(DaemonConfig{}));
+  for (std::string line; std::getline(lines, line);) {
+    const auto start = line.find_first_not_of(" -");
+    const std::string key = line.substr(start, line.find(':') - start) + ":";
+    EXPECT_THAT(text, HasSubstr(key));
+  }
+}
+
+TEST(DaemonConfig, EveryShippedVehicleLoads) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("daemon/config")) {
+    if (entry.path().extension() != ".yaml") continue;
+    DaemonConfig config;
+    std::vector<std::string> problems;
+    EXPECT_TRUE(LoadDaemonConfig(entry.path().string(), config, problems))
+        << testing::PrintToString(problems);
+    ++count;
+  }
+  EXPECT_GE(count, 2);
+}
+
+TEST(DaemonConfig, ClashingAndImpossibleNamesAreProblems) {
+  DaemonConfig config;
+  config.perception.vehicle.radars[1].name = config.perception.vehicle.radars[0].name;
+  config.lcm.channels.bsm = "TRACKS_LOCAL";
+  config.lcm.channels.status = std::string(64, 'X');
+  config.lcm.channels.config = ".*$";
+  config.lcm.channels.misbehavior = "";
+  EXPECT_THAT(
+      ProblemsOf(config),
+      testing::ElementsAre(HasSubstr("vehicle.radars[1].name: channel RADAR_FRONT: is that of "
+                                     "vehicle.radars[0].name already"),
+                           HasSubstr("lcm.channels.tracks_local: channel TRACKS_LOCAL: is that of "
+                                     "lcm.channels.bsm already"),
+                           HasSubstr("lcm.channels.misbehavior: channel \"\""),
+                           HasSubstr("lcm.channels.status: channel \"XX"),
+                           HasSubstr("lcm.channels.config: channel \".*$\"")));
+}
+
+TEST(DaemonConfig, RangesTheWrongWayRoundAreProblems) {
+  DaemonConfig config;
+  config.perception.vehicle.radars[0].min_range_m = 20.0;
+  config.perception.vehicle.radars[0].max_range_m = 10.0;
+  config.perception.vehicle.cameras[0].distortion = {1.0, 2.0};
+  EXPECT_THAT(ProblemsOf(config), testing::ElementsAre(HasSubstr("vehicle.radars[0].min_range_m"),
+                                                       HasSubstr("vehicle.cameras[0].distortion")));
+}
+
+}  // namespace
+}  // namespace v2vouch

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/assembly/engine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "daemon/wire/codec.h"
+#include "tests/support/synthetic_drive.h"
+#include "tests/support/wire_drive.h"
+#include "v2vouch/camera_image_t.hpp"
+#include "v2vouch/daemon_status_t.hpp"
+#include "v2vouch/text_t.hpp"
+#include "v2vouch/track_list_t.hpp"
+
+namespace v2vouch {
+namespace {
+
+using testing::WireMessage;
+
+testing::SyntheticDrive Drive() {
+  testing::SyntheticDrive drive;
+  drive.duration_s = 4.0;
+  drive.cars.push_back({.x_m = 30.0, .y_m = 0.0, .speed_mps = 9.0, .sender = 0x11});
+  drive.cars.push_back({.x_m = 45.0, .y_m = 3.5, .yaw_rad = 3.14, .speed_mps = 8.0});
+  return drive;
+}
+
+const std::vector<WireMessage>& Messages() {
+  static const std::vector<WireMessage> messages =
+      testing::EncodeInputs(testing::MakeInputs(Drive()), VehicleConfig{});
+  return messages;
+}
+
+struct Published {
+  std::map<std::string, std::vector<std::vector<std::uint8_t>>> published;
+  std::string digest_local;
+  std::string digest_priority;
+  ReasonCounts refusals{};
+  std::int64_t accepted = 0;
+};
+
+Published RunAll(const std::vector<WireMessage>& messages) {
+  Engine engine(DaemonConfig{}, std::make_unique<NullBiasEstimator>());
+  Published run;
+  Outbox outbox;
+  const auto keep = [&] {
+    for (const auto& message : outbox.messages()) {
+      run.published[message.channel].push_back(message.bytes);
+    }
+    outbox.Clear();
+  };
+  engine.Start(outbox);
+  keep();
+  for (const WireMessage& message : messages) {
+    engine.OnMessage(message.channel, message.bytes, message.received, outbox);
+    keep();
+  }
+  run.digest_local = engine.digest_local();
+  run.digest_priority = engine.digest_priority();
+  run.refusals = engine.refusals();
+  run.accepted = engine.accepted();
+  return run;
+}
+
+std::uint64_t CountOf(const Published& run, Reason reason) {
+  return run.refusals[static_cast<std::size_t>(reason)];
+}
+
+TEST(Engine, PublishesConfigurationAndCalibrationAtStart) {
+  const Published run = RunAll({});
+  ASSERT_EQ(run.published.at("V2VOUCH_CONFIG").size(), 1u);
+  EXPECT_EQ(wire::Decode<text_t>(run.published.at("V2VOUCH_CONFIG")[0])->text,
+            PrintDaemonConfig(DaemonConfig{}));
+  EXPECT_EQ(run.published.at("CALIBRATION").size(), 1u);
+}
+
+TEST(Engine, GoodDriveGivesListsWithoutRefusalAndStatusOncePerSecond) {
+  const Published run = RunAll(Messages());
+  EXPECT_EQ(run.accepted, static_cast<std::int64_t>(Messages().size()));
+  for (std::size_t i = 0; i < kReasonCount; ++i) {
+    EXPECT_EQ(run.refusals[i], 0u) << ReasonName(static_cast<Reason>(i));
+  }
+  const auto& statuses = run.published.at("V2VOUCH_STATUS");
+  EXPECT_GE(statuses.size(), 4u);
+  EXPECT_LE(statuses.size(), 5u);
+  const auto status = wire::Decode<daemon_status_t>(statuses.back());
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->num_latencies, 0);
+  EXPECT_EQ(status->local_tracks, 2);
+  EXPECT_EQ(run.published.at("TRACKS_LOCAL").size(), run.published.at("TRACKS_PRIORITY").size());
+  for (const auto& input : status->inputs) {
+    if (!input.channel.starts_with("RADAR_")) continue;
+    EXPECT_NEAR(input.rate_hz, 20.0, 2.0) << input.channel;
+  }
+}
+
+TEST(Engine, SameMessagesGiveTheSameBytes) {
+  const Published a = RunAll(Messages());
+  const Published b = RunAll(Messages());
+  EXPECT_EQ(a.published, b.published);
+  EXPECT_EQ(a.digest_local, b.digest_local);
+}
+
+TEST(Engine, LocalIsTheSameBitForBitWithoutBsmsAndGnss) {
+  std::vector<WireMessage> own;
+  for (const WireMessage& message : Messages()) {
+    if (message.channel != "BSM" && message.channel != "EGO_GNSS") own.push_back(message);
+  }
+  ASSERT_LT(own.size(), Messages().size());
+  const Published with = RunAll(Messages());
+  const Published without = RunAll(own);
+  EXPECT_EQ(with.published.at("TRACKS_LOCAL"), without.published.at("TRACKS_LOCAL"));
+  EXPECT_EQ(with.digest_local, without.digest_local);
+}
+
+TEST(Engine, RefusedMessagesAreCountedByReasonAndChangeNothing) {
+  std::vector<WireMessage> messages;
+  for (const WireMessage& message : Messages()) {
+    messages.push_back(message);
+    if (messages.size() % 50 != 0) continue;
+    WireMessage bad = message;
+    bad.bytes.push_back(0);
+    messages.push_back(bad);
+    bad.bytes = {1, 2, 3};
+    messages.push_back(bad);
+    bad.channel = "NOBODY";
+    messages.push_back(bad);
+  }
+  const Published good = RunAll(Messages());
+  const Published mixed = RunAll(messages);
+  const std::uint64_t rounds = (messages.size() - Messages().size()) / 3;
+  EXPECT_EQ(CountOf(mixed, Reason::kTrailingBytes), rounds);
+  EXPECT_EQ(CountOf(mixed, Reason::kTooShort), rounds);
+  EXPECT_EQ(CountOf(mixed, Reason::kUnknownChannel), rounds);
+  EXPECT_EQ(mixed.digest_local, good.digest_local);
+  EXPECT_EQ(mixed.digest_priority, good.digest_priority);
+}
+
+TEST(Engine, SecondCopyOfEveryOwnMessageIsADuplicate) {
+  std::vector<WireMessage> twice;
+  std::uint64_t own = 0;
+  for (const WireMessage& message : Messages()) {
+    twice.push_back(message);
+    if (message.channel == "BSM" || message.channel == "EGO_GNSS") continue;
+    twice.push_back(message);
+    ++own;
+  }
+  const Published once = RunAll(Messages());
+  const Published doubled = RunAll(twice);
+  EXPECT_EQ(CountOf(doubled, Reason::kDuplicate), own);
+  EXPECT_EQ(doubled.digest_local, once.digest_local);
+}
+
+TEST(Engine, StaleListsAreMarkedAndInNoDigest) {
+  Engine engine(DaemonConfig{}, std::make_unique<NullBiasEstimator>());
+  Outbox outbox;
+  engine.PublishStale(std::chrono::milliseconds(100), outbox);
+  EXPECT_TRUE(outbox.messages().empty());  // Nothing was ever seen.
+  for (const WireMessage& message : Messages()) {
+    engine.OnMessage(message.channel, message.bytes, message.received, outbox);
+  }
+  const std::string digest = engine.digest_local();
+  outbox.Clear();
+  engine.PublishStale(std::chrono::seconds(1), outbox);
+  ASSERT_EQ(outbox.messages().size(), 2u);
+  for (const auto& message : outbox.messages()) {
+    const auto list = wire::Decode<track_list_t>(message.bytes);
+    ASSERT_TRUE(list);
+    EXPECT_EQ(list->stale, 1);
+  }
+  EXPECT_EQ(engine.digest_local(), digest);
+}
+
+TEST(Engine, PicturesWithoutADetectorAreRefusedByName) {
+  DaemonConfig config;
+  config.perception.vehicle.cameras[0].source = CameraSource::kImage;
+  Engine engine(config, std::make_unique<NullBiasEstimator>());
+  camera_image_t image{};
+  image.utime = 1'700'000'000'000'000;
+  image.sensor = "FRONT";
+  image.width_px = image.height_px = 16;
+  image.encoding = "jpeg";
+  image.data = {1, 2, 3};
+  image.num_bytes = 3;
+  std::vector<std::uint8_t> bytes;
+  wire::Encode(image, bytes);
+  Outbox outbox;
+  engine.OnMessage("CAMERA_FRONT_IMAGE", bytes, {}, outbox);
+  EXPECT_EQ(engine.refusals()[static_cast<std::size_t>(Reason::kNoDetector)], 1u);
+}
+
+}  // namespace
+}  // namespace v2vouch

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/replay/replay.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "daemon/io/event_log.h"
+#include "tests/support/synthetic_drive.h"
+#include "tests/support/wire_drive.h"
+
+namespace v2vouch {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::WireMessage;
+
+class ReplayTest : public ::testing::Test {
+ protected:
+  ReplayTest() {
+    std::string pattern = (fs::temp_directory_path() / "replay_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~ReplayTest() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] std::string Path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+
+  std::string Save(const std::string& name, const std::vector<WireMessage>& messages) const {
+    std::string error;
+    const auto writer = LogWriter::Create(Path(name), error);
+    for (const WireMessage& message : messages) {
+      writer->Write(message.received, message.channel, message.bytes);
+    }
+    EXPECT_TRUE(writer->Close(error)) << error;
+    return Path(name);
+  }
+
+  fs::path folder_;
+};
+
+std::vector<WireMessage> Drive() {
+  testing::SyntheticDrive drive;
+  drive.duration_s = 2.0;
+  drive.cars.push_back({.x_m = 30.0, .y_m = 0.0, .speed_mps = 9.0, .sender = 0x11});
+  return testing::EncodeInputs(testing::MakeInputs(drive), VehicleConfig{});
+}
+
+std::vector<LogEvent> Events(const std::string& path) {
+  std::string error;
+  const auto reader = LogReader::Open(path, error);
+  EXPECT_TRUE(reader) << error;
+  std::vector<LogEvent> events;
+  for (LogEvent event; reader && reader->Next(event);) events.push_back(event);
+  return events;
+}
+
+ReplayResult RunLog(const std::string& in, const std::string& out) {
+  ReplayResult result;
+  std::string error;
+  EXPECT_TRUE(Replay(
+      in, out, DaemonConfig{}, [](double) { return true; }, result, error))
+      << error;
+  return result;
+}
+
+TEST_F(ReplayTest, OutputHoldsAllEventsAndEachOutputBehindItsCause) {
+  auto messages = Drive();
+  messages.insert(messages.begin() + 5, {"TRUTH", {1, 2, 3}, messages[5].received});
+  const std::string in = Save("in.lcm", messages);
+  const ReplayResult result = RunLog(in, Path("out.lcm"));
+  EXPECT_EQ(result.events, static_cast<std::int64_t>(messages.size()));
+  EXPECT_EQ(result.copied, 1);
+  EXPECT_EQ(result.accepted, result.inputs);
+  EXPECT_GT(result.lists, 50);
+
+  std::size_t next = 0;
+  std::int64_t local_lists = 0;
+  for (const LogEvent& event : Events(Path("out.lcm"))) {
+    if (next < messages.size() && event.channel == messages[next].channel &&
+        event.bytes == messages[next].bytes) {
+      ++next;
+    } else {
+      const Timestamp cause = messages[next == 0 ? 0 : next - 1].received;
+      EXPECT_EQ(event.received, cause) << event.channel;
+    }
+    if (event.channel == "TRACKS_LOCAL") ++local_lists;
+  }
+  EXPECT_EQ(next, messages.size());
+  EXPECT_EQ(local_lists, result.lists);
+}
+
+TEST_F(ReplayTest, RunsAreRepeatableAndReplayOfAReplayIsTheSame) {
+  const std::string in = Save("in.lcm", Drive());
+  const ReplayResult first = RunLog(in, Path("a.lcm"));
+  RunLog(in, Path("b.lcm"));
+  const auto a = Events(Path("a.lcm"));
+  const auto b = Events(Path("b.lcm"));
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].bytes, b[i].bytes) << a[i].channel;
+  const ReplayResult again = RunLog(Path("a.lcm"), Path("c.lcm"));
+  EXPECT_GT(again.old_outputs, 0);
+  EXPECT_EQ(again.digest_local, first.digest_local);
+  EXPECT_EQ(again.digest_priority, first.digest_priority);
+  EXPECT_EQ(Events(Path("c.lcm")).size(), a.size());
+}
+
+TEST_F(ReplayTest, LocalDigestKnowsNeitherBsmNorTruthNorGnss) {
+  const ReplayResult whole = RunLog(Save("whole.lcm", Drive()), "");
+  std::vector<WireMessage> own;
+  for (const WireMessage& message : Drive()) {
+    if (message.channel != "BSM" && message.channel != "EGO_GNSS") own.push_back(message);
+  }
+  EXPECT_EQ(RunLog(Save("own.lcm", own), "").digest_local, whole.digest_local);
+}
+
+TEST_F(ReplayTest, FilesThatCannotBeUsedSayWhy) {
+  ReplayResult result;
+  std::string error;
+  const auto go_on = [](double) { return true; };
+  EXPECT_FALSE(Replay(Path("none.lcm"), "", DaemonConfig{}, go_on, result, error));
+  EXPECT_THAT(error, ::testing::HasSubstr("No such file"));
+  const std::string in = Save("in.lcm", Drive());
+  EXPECT_FALSE(Replay(in, in, DaemonConfig{}, go_on, result, error));
+  EXPECT_THAT(error, ::testing::HasSubstr("is the log that is being read"));
+  EXPECT_FALSE(Replay(in, Path("no/folder/out.lcm"), DaemonConfig{}, go_on, result, error));
+}
+
+TEST(JsonReport, HasTheContractsShape) {
+  ReplayResult result;
+  result.events = 10;
+  result.log_seconds = 20.0;
+  result.wall_seconds = 0.1;
+  for (int i = 1; i <= 100; ++i) result.step_us.push_back(i);
+  result.refused[static_cast<std::size_t>(Reason::kBsmRange)] = 3;
+  result.digest_local = "ab";
+  const auto json = nlohmann::json::parse(JsonReport(result));
+  EXPECT_EQ(json["events"], 10);
+  EXPECT_NEAR(json["realtime_factor"].get<double>(), 200.0, 1e-9);
+  EXPECT_EQ(json["step_us"]["p50"], 50.0);
+  EXPECT_EQ(json["step_us"]["p99"], 99.0);
+  EXPECT_EQ(json["step_us"]["max"], 100.0);
+  EXPECT_EQ(json["refused"], nlohmann::json({{"bsm_range", 3}}));
+  EXPECT_EQ(json["digest_local"], "ab");
+  EXPECT_TRUE(json.contains("log_seconds") && json.contains("wall_seconds") &&
+              json.contains("digest_priority"));
+}
+
+}  // namespace
+}  // namespace v2vouch
