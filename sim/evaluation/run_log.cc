@@ -2,6 +2,7 @@
 #include "sim/evaluation/run_log.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <v2vouch/bsm_t.hpp>
@@ -44,6 +45,7 @@ class Reader {
   }
 
   void Finish() {
+    UseMessageClock();
     for (auto& [id, object] : objects_) log_.truth.objects.push_back(std::move(object));
     log_.specs = ReadSceneSpecs(scenario_);
     for (const auto& [look, channel] : looks_) {
@@ -70,7 +72,8 @@ class Reader {
     if (!message) return;
     ReceivedList list{event.received, FromMicros(message->utime), message->stale != 0, {}};
     for (const track_t& track : message->tracks) {
-      if (track.is_confirmed == 0) continue;
+      // Senders are claims, confirmed by nobody; the two other lists hold what counts as a vehicle.
+      if (track.is_confirmed == 0 && kind != ListKind::kV2v) continue;
       if (!AllFinite({track.x_body_m, track.y_body_m, track.yaw_body_rad, track.speed_mps,
                       track.yaw_rate_radps, track.accel_mps2})) {
         ++log_.refused;
@@ -96,6 +99,7 @@ class Reader {
     const auto message = Decoded<truth_list_t>(event);
     if (!message) return;
     const Timestamp stamp = FromMicros(message->utime);
+    recorder_ahead_ = std::min(recorder_ahead_, event.received - stamp);
     TruthSample ego;
     ego.stamp = stamp;
     ego.motion = {message->ego_x_m,
@@ -138,6 +142,18 @@ class Reader {
     if (message && scenario_.empty()) scenario_ = message->text;
   }
 
+  // A live recording of a simulation has the recorder's wall clock on its events and the scenario's
+  // time in its messages. TRUTH is sent at its own time, so its shortest way gives the difference.
+  void UseMessageClock() {
+    constexpr Duration kSameClock = std::chrono::seconds(1);
+    if (log_.truth.empty() || std::chrono::abs(recorder_ahead_) < kSameClock) return;
+    for (auto& lists : log_.lists) {
+      for (ReceivedList& list : lists) list.received -= recorder_ahead_;
+    }
+    for (BsmArrival& bsm : log_.bsms) bsm.received -= recorder_ahead_;
+    for (auto& [look, channel] : looks_) look.received -= recorder_ahead_;
+  }
+
   template <class T>
   void TakeLook(const LogEvent& event) {
     const auto message = Decoded<T>(event);
@@ -153,6 +169,7 @@ class Reader {
   std::map<std::int64_t, TruthObject> objects_;
   std::string scenario_;
   std::vector<std::pair<SensorLook, std::string>> looks_;
+  Duration recorder_ahead_ = Duration::max();  // Of the message clock; shortest seen.
 };
 
 }  // namespace

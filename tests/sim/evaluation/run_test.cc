@@ -147,6 +147,19 @@ TEST(RunWithoutTruth, IsCountedButNotJudged) {
   EXPECT_NEAR(json.at("lists").at("priority").at("longest_track_s").get<double>(), 12.4, 0.1);
 }
 
+// A live recording of a scenario: events carry the wall clock, messages the scenario's time.
+TEST(RunLogReader, ARecordersOwnClockChangesNoScore) {
+  SyntheticRun run;
+  const auto same = Evaluate(Recorded(run, "same_clock.lcm"), {});
+  run.recorder_ahead_s = 100.0 * 86400.0;
+  const auto ahead = Evaluate(Recorded(run, "clock_ahead.lcm"), {});
+  run.recorder_ahead_s = -run.recorder_ahead_s;
+  const auto behind = Evaluate(Recorded(run, "clock_behind.lcm"), {});
+  EXPECT_GT(same->headline(ListKind::kLocal).localisation_rms_m, 0.0);
+  EXPECT_EQ(ToJson(*ahead, nullptr), ToJson(*same, nullptr));
+  EXPECT_EQ(ToJson(*behind, nullptr), ToJson(*same, nullptr));
+}
+
 TEST(RunLogReader, SaysWhyAFileCannotBeRead) {
   RunLog log;
   std::string error;

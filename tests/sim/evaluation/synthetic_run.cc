@@ -141,7 +141,7 @@ class Writer {
   template <class T>
   void Put(const std::string& channel, double received_s, const T& message) {
     wire::Encode(message, bytes_);
-    log_.Write(FromMicros(Micros(received_s)), channel, bytes_);
+    log_.Write(FromMicros(Micros(received_s + run_.recorder_ahead_s)), channel, bytes_);
   }
 
   void Truth(double t) {

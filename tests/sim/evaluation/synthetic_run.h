@@ -20,9 +20,10 @@ namespace v2vouch::evaluation {
 /// it again under a new id; PRIORITY keeps it on V2V; V2V carries everybody who sends, off by a
 /// constant bias. LOCAL has one false track for half a second.
 struct SyntheticRun {
-  double noise_sigma_m = 0.15;  ///< Per axis, of listed visible positions.
-  double bias_m = 1.2;          ///< Of the V2V list, eastwards.
-  double latency_s = 0.03;      ///< From a list's time to its arrival.
+  double noise_sigma_m = 0.15;    ///< Per axis, of listed visible positions.
+  double bias_m = 1.2;            ///< Of the V2V list, eastwards.
+  double latency_s = 0.03;        ///< From a list's time to its arrival.
+  double recorder_ahead_s = 0.0;  ///< Of the message clock; the log's own stamps only.
   bool has_truth = true;
   bool has_lists = true;
   bool paper_like = false;  ///< PRIORITY as the paper's method makes it: with a ghost, no bridging.
