@@ -141,64 +141,43 @@ void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state) {
 std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoState& ego,
                                         const RadarConfig& radar,
                                         const RadarMeasurement& measurement) {
-  constexpr int kMinReturns = 3;
-  if (measurement.is_object || measurement.returns < kMinReturns) return std::nullopt;
-  const double n = measurement.returns;
+  if (measurement.is_object || measurement.returns < 2) return std::nullopt;
   const Point<Odometry> antenna = ego.X_OB * Point<Body>{radar.x_m, radar.y_m};
   const Eigen::Vector2d p_OS = antenna.vector() - state.mean.head<2>();
   const double range = p_OS.norm();
   if (!(range > 1.0)) return std::nullopt;
   const double aspect = std::atan2(p_OS.y(), p_OS.x()) - state.mean[kYaw];
-  const double length = state.mean[ExtendedState::kLength];
-  const double width = state.mean[ExtendedState::kWidth];
   const double ca = std::abs(std::cos(aspect));
   const double sa = std::abs(std::sin(aspect));
 
-  // Chance that at least one of the returns came from each face.
-  const double front = std::max(ca - 0.5 * length / range, 0.0) * width;
-  const double side = std::max(sa - 0.5 * width / range, 0.0) * length;
-  // A side seen at a grazing angle gives few returns, and those near its end: its span is no
-  // length.
-  constexpr double kMinSideShare = 0.5;
-  if (!(side > kMinSideShare * (front + side))) return std::nullopt;
-  const double sees_front = 1.0 - std::pow(side / (front + side), n);
-  const double sees_side = 1.0 - std::pow(front / (front + side), n);
-
-  const double cover = (n - 1.0) / (n + 1.0);
-  const double scatter = 2.0 * (n - 1.0) / ((n + 1.0) * (n + 1.0) * (n + 2.0));
   Linearized out;
   out.y.resize(2);
   out.H.setZero(2, kStateSize);
   out.E.resize(2, 2);
-  out.E.row(0) << cover * sees_side * ca, cover * sees_front * sa;
-  out.E.row(1) << cover * sees_side * sa / range, cover * sees_front * ca / range;
-  const double radial = sees_side * length * ca + sees_front * width * sa;
-  const double across = (sees_side * length * sa + sees_front * width * ca) / range;
-  // The noise of single returns widens a span: for Gaussian noise of sigma s the span of n returns
-  // is about 2 s sqrt(ln n) of its own, and the two add as squares.
-  const double widen = 4.0 * std::log(n);
-  const double range_noise = widen * radar.range_sigma_m * radar.range_sigma_m;
-  const double azimuth_noise = widen * radar.azimuth_sigma_rad * radar.azimuth_sigma_rad;
-  const double span = measurement.azimuth_max_rad - measurement.azimuth_min_rad;
-  out.y[0] = measurement.radial_extent_m - std::sqrt(cover * cover * radial * radial + range_noise);
-  out.y[1] = span - std::sqrt(cover * cover * across * across + azimuth_noise);
+  out.E.row(0) << ca, sa;
+  out.E.row(1) << sa / range, ca / range;
   out.R.setZero(2, 2);
-  // A seventh of the span for what the model leaves out: not every part of a body reflects.
-  out.R(0, 0) = (scatter + 0.02) * radial * radial + range_noise;
-  out.R(1, 1) = (scatter + 0.02) * across * across + azimuth_noise;
-  if (!std::isfinite(out.y.sum())) return std::nullopt;
-  // A cluster may be a part of the vehicle, never more than it: only a span longer than expected by
-  // more than its scatter counts, and what exceeds that.
+  const Eigen::Vector2d sigma(radar.range_sigma_m, radar.azimuth_sigma_rad);
+  const Eigen::Vector2d span(measurement.radial_extent_m,
+                             measurement.azimuth_max_rad - measurement.azimuth_min_rad);
+  const Eigen::Vector2d whole = out.E * state.mean.tail<2>();
+  bool says_something = false;
   for (int i = 0; i < 2; ++i) {
-    const double slack = std::sqrt(out.R(i, i));
-    if (out.y[i] > slack) {
-      out.y[i] -= slack;
+    // Noise alone spreads n returns over about 2 sigma sqrt(ln n); spans add as squares. One sigma
+    // more is given away, so that repeated noise does not make vehicles grow.
+    const double noise2 = 4.0 * std::log(measurement.returns) * sigma[i] * sigma[i];
+    const double excess =
+        std::sqrt(std::max(span[i] * span[i] - noise2, 0.0)) - sigma[i] - whole[i];
+    out.R(i, i) = noise2;
+    if (excess > 0.0) {
+      out.y[i] = excess;
+      says_something = true;
     } else {
       out.y[i] = 0.0;
       out.E.row(i).setZero();
     }
   }
-  if (out.y.isZero(0.0)) return std::nullopt;
+  if (!says_something) return std::nullopt;
   return out;
 }
 

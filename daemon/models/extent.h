@@ -52,12 +52,14 @@ std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
 /// the face that was measured stays where it is.
 void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state);
 
-/// What the spread of one cluster says about the size, for a vehicle of known motion: `n` returns
-/// spread evenly over a visible span D cover (n - 1) / (n + 1) D of it on average. A cluster may be
-/// a part of a vehicle, so a span can only make the vehicle longer. Rows: radial and azimuth span.
-/// For vehicles that show their side, three or more returns, and sensors that give plain
-/// reflections.
-/// @return nullopt where the cluster says nothing.
+/// What the spread of one cluster says about the size, for a vehicle of known motion: returns of
+/// one vehicle span no more than its box does,
+///
+///     radial span <= L |cos a| + W |sin a|,   azimuth span <= (L |sin a| + W |cos a|) / r
+///
+/// so a wider cluster makes the vehicle longer, and a narrower one says nothing: it may be a part.
+/// @return nullopt where the cluster fits into the box, has one return, or comes from a sensor that
+///   tracks by itself.
 std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoState& ego,
                                         const RadarConfig& radar,
                                         const RadarMeasurement& measurement);

@@ -16,6 +16,8 @@ constexpr double kPoint_m = 1e-3;
 // Share of the reflections' spread that more reflections do not remove: scatterers sit where the
 // body puts them (wheels, corners, plate) and stay there from scan to scan.
 constexpr double kLastingSpread = 0.04;
+// Yaw rate that an estimate of it may miss while a vehicle begins to turn.
+constexpr double kYawRateDoubt_radps = 0.15;
 
 bool IsPoint(double length_m, double width_m) { return length_m < kPoint_m || width_m < kPoint_m; }
 
@@ -170,6 +172,8 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
     mean.diagonal().array() += given.min(sensor.square() / n);
     R.diagonal().setZero();
     R += mean + kLastingSpread * spread;
+    // The yaw rate is not known that well: off-centre points move by what is wrong with it.
+    R(2, 2) += kYawRateDoubt_radps * kYawRateDoubt_radps * across.dot(spread_O * across) / n;
     const Eigen::Array3d missing = given - mean.diagonal().array();
     R.diagonal().array() += missing.max(0.0);
   }

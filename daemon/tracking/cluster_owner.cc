@@ -13,6 +13,8 @@ namespace {
 
 // A cluster belongs to a vehicle up to this far outside of its box, plus its own noise.
 constexpr double kBoxMargin_m = 0.5;
+// Ahead and behind vehicles keep more distance than this from each other.
+constexpr double kEndMargin_m = 1.5;
 constexpr double kMaxBlur_m = 1.5;
 // While a vehicle's direction is unknown, this round its reflecting point.
 constexpr double kPointRadius_m = 2.5;
@@ -57,9 +59,9 @@ bool Tracker::Owns(std::size_t track, const RadarLook& look, const RadarMeasurem
   if (filter.is_vehicle()) {
     const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-x[kYaw]) * from_point;
     const Extent& extent = tracks_[track].extent;
-    const double margin = kBoxMargin_m + blur_m;
-    if (std::abs(inside.x()) > 0.5 * extent.length_m + margin ||
-        std::abs(inside.y()) > 0.5 * extent.width_m + margin) {
+    const double reach = 0.5 * extent.length_m + extent.length_sigma_m + kEndMargin_m + blur_m;
+    if (std::abs(inside.x()) > reach ||
+        std::abs(inside.y()) > 0.5 * extent.width_m + kBoxMargin_m + blur_m) {
       return false;
     }
     velocity += x[kYawRate] * Eigen::Vector2d(-from_point.y(), from_point.x());
@@ -81,8 +83,8 @@ void Tracker::AbsorbClusters(const RadarLook& look,
   }
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (assigned_[i] < 0 && tracks_[i].existence < kOwnerExistence) continue;
-    const double reach_m =
-        0.5 * tracks_[i].extent.length_m + tracks_[i].extent.width_m + kPointRadius_m + kMaxBlur_m;
+    const double reach_m = 0.5 * tracks_[i].extent.length_m + tracks_[i].extent.length_sigma_m +
+                           tracks_[i].extent.width_m + kPointRadius_m + kMaxBlur_m;
     candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m, [&](std::size_t j) {
       if (owner_[j] >= 0 || measurements[j].is_static) return;
       if (Owns(i, look, measurements[j], candidates_[j].p_O)) owner_[j] = static_cast<int>(i);

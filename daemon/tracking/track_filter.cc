@@ -26,12 +26,13 @@ constexpr double kReflectionAcrossSigma_m = 0.9;
 constexpr double kPointRadialSigma_m = 0.15;
 constexpr double kPointAcrossSigma_m = 0.2;
 // A velocity that points somewhere: heading sigma for becoming a vehicle, and for being shown.
-constexpr double kDirectedSigma_rad = 0.25;
+constexpr double kDirectedSigma_rad = 0.15;
+constexpr double kDirectedSpeedShare = 0.2;
 constexpr double kShownSigma_rad = 0.6;
 constexpr double kDirectedSpeed_mps = 1.0;
 // A direction that was only assumed.
 constexpr double kAssumedYawSigma_rad = 0.7;
-constexpr double kInitialYawRateSigma_radps = 0.2;
+constexpr double kInitialYawRateSigma_radps = 0.1;
 constexpr double kInitialAccelSigma_mps2 = 1.5;
 // Young tracks are linearised twice: range rate bends strongly over an uncertain heading.
 constexpr double kYoung_s = 0.7;
@@ -342,7 +343,7 @@ bool TrackFilter::HasDirection(double max_sigma_rad) const {
   const Eigen::Matrix2d P = point_covariance_.bottomRightCorner<2, 2>();
   const double across_sigma = std::sqrt(across.dot(P * across));
   const double along_sigma = std::sqrt(along.dot(P * along));
-  return across_sigma < max_sigma_rad * speed && along_sigma < 0.4 * speed;
+  return across_sigma < max_sigma_rad * speed && along_sigma < kDirectedSpeedShare * speed;
 }
 
 // Centre, direction and size from the point: centre = point - offset of the reflections, with the

@@ -35,10 +35,11 @@ constexpr double kSureExistence = 0.999999;
 // Standard deviations of the coarse gate; the chi-square gate decides.
 constexpr double kCoarseSigmas = 4.7;
 // Published tracks must share one place for so long before one of them goes, others for less.
-constexpr double kDuplicateHold_s = 0.3;
+constexpr double kDuplicateHold_s = 0.2;
 constexpr double kTentativeHold_s = 0.1;
 // A centre counts as inside of a box this far behind its ends.
 constexpr double kInside_m = 0.5;
+constexpr double kMaxEndDoubt_m = 1.5;
 constexpr double kCoastingSince_s = 0.5;
 
 double LargestSigma(const Eigen::Matrix2d& P) {
@@ -59,12 +60,13 @@ bool IsFinite(const CameraMeasurement& z) {
 }
 
 // Of two tracks of one vehicle the one that stays: published before not, named by a camera before
-// not, older before younger.
+// not, seen more often by cameras (which see the vehicle as a whole), older before younger.
 bool IsSenior(const LocalTrack& a, const LocalTrack& b) {
   if (a.is_confirmed != b.is_confirmed) return a.is_confirmed;
   const bool a_is_named = a.object_class != ObjectClass::kUnknown;
   const bool b_is_named = b.object_class != ObjectClass::kUnknown;
   if (a_is_named != b_is_named) return a_is_named;
+  if (a.camera_hits != b.camera_hits) return a.camera_hits > b.camera_hits;
   return a.id < b.id;
 }
 
@@ -447,11 +449,16 @@ void Tracker::DropDuplicates(double dt_s) {
         if (!IsSenior(old, young)) continue;
         const Eigen::Vector2d between = Eigen::Rotation2D<double>(-old.state_O.mean[kYaw]) *
                                         (young.state_O.mean.head<2>() - old.state_O.mean.head<2>());
+        // A long vehicle's end is not known well: what nobody named may be a part of it.
+        const double beyond =
+            young.object_class == ObjectClass::kUnknown
+                ? std::min(old.extent.length_sigma_m, kMaxEndDoubt_m) + 0.25 * young.extent.length_m
+                : 0.0;
         // Centres nearer than half of what two vehicles need, or one's centre in the other's box.
         const double half_length = std::max(0.25 * (old.extent.length_m + young.extent.length_m),
-                                            0.5 * old.extent.length_m - kInside_m);
+                                            0.5 * old.extent.length_m - kInside_m + beyond);
         const double half_width =
-            std::max(0.35 * (old.extent.width_m + young.extent.width_m), 0.5 * old.extent.width_m);
+            std::max(0.45 * (old.extent.width_m + young.extent.width_m), 0.5 * old.extent.width_m);
         if (std::abs(between.x()) > half_length || std::abs(between.y()) > half_width) continue;
         const double difference =
             (hidden_[i].filter.velocity_O() - hidden_[j].filter.velocity_O()).norm();
