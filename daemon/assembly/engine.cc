@@ -134,8 +134,12 @@ void Engine::PublishLists(Outbox& outbox) {
 void Engine::PublishStale(Duration silence, Outbox& outbox) const {
   const Timestamp newest = perception_.newest_frame();
   if (newest == Timestamp{}) return;
+  // A frame that is on its way carries an older stamp than its arrival. The copies keep that far
+  // behind, so that the list it will give is not older than they were.
+  const Duration ahead =
+      std::max(Duration::zero(), silence - FromSeconds(config_.perception.timeline.stale_after_s));
   Outputs predicted;
-  perception_.PredictedLists(newest + silence, predicted);
+  perception_.PredictedLists(newest + ahead, predicted);
   if (!predicted.has_lists) return;
   const wire::ChannelNames& names = config_.lcm.channels;
   wire::EncodeList(predicted.local, outbox.Add(names.tracks_local));

@@ -40,14 +40,18 @@ struct LocalTrack {
   Timestamp start{};
   KinematicState state_O;
   Extent extent;
+  bool is_point = false;  ///< Sensors report its centre: their models know no extent.
   ObjectClass object_class = ObjectClass::kUnknown;
   double existence = 0.0;     ///< Probability that a vehicle is there.
   bool is_confirmed = false;  ///< Published.
   Visibility visibility = Visibility::kVisible;
   std::optional<Timestamp> last_radar;
   std::optional<Timestamp> last_camera;
-  int radar_hits = 0;   ///< Since start.
+  int radar_hits = 0;  ///< Since start.
   int camera_hits = 0;
+
+  /// The extent that models of what sensors report of it must use.
+  [[nodiscard]] Extent ModelExtent() const { return is_point ? Extent{0, 0, 0, 0} : extent; }
 };
 
 /// How well one sector round the car is watched.

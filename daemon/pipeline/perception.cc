@@ -194,23 +194,34 @@ void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
   outputs.Clear();
   const State& state = *state_;
   const LocalFrame* frame = state.timeline.newest_frame();
-  if (frame == nullptr || at <= state.timeline.newest_time()) return;
+  if (frame == nullptr || at < frame->stamp) return;
   outputs.has_lists = true;
-  const EgoState ego_at = state.timeline.local().odometry().StateAt(at).value_or(frame->ego);
+  const EgoOdometry& odometry = state.timeline.local().odometry();
 
   state.LocalList(*frame, outputs.local);
   outputs.local.stamp = at;
   outputs.local.stale = true;
-  outputs.local.X_OB = ego_at.X_OB;
+  outputs.local.X_OB = odometry.StateAt(at).value_or(frame->ego).X_OB;
   for (PublishedTrack& line : outputs.local.tracks) {
     PredictCtra(line.track.state_O, ToSeconds(at - frame->stamp), state.config.tracking.motion);
   }
   for (SectorHealth& sector : outputs.local.sectors) sector.state = SectorState::kBlind;
 
+  const Timestamp at_v2v = std::max(at, state.timeline.newest_time());
+  const EgoState ego_at = odometry.StateAt(at_v2v).value_or(frame->ego);
   outputs.priority = outputs.local;
+  outputs.priority.stamp = at_v2v;
+  outputs.priority.X_OB = ego_at.X_OB;
   outputs.priority.tracks.clear();
   outputs.priority.ego_gnss_suspect = state.timeline.priority().alignment().is_suspect();
-  state.timeline.priority().Publish(at, ego_at, outputs.priority);
+  state.timeline.priority().Publish(at_v2v, ego_at, outputs.priority);
+
+  // Nobody vouches for anything any more: empty and blind, which is not the same as "nothing
+  // there".
+  if (ToSeconds(at - frame->stamp) > state.config.tracking.hidden_hold_s) {
+    outputs.local.tracks.clear();
+    outputs.priority.tracks.clear();
+  }
 }
 
 Timestamp Perception::newest_frame() const {

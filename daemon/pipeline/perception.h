@@ -25,7 +25,8 @@ class Perception {
   /// Takes one input in order of arrival. `outputs` is cleared and reused.
   void Step(const Input& input, Outputs& outputs);
 
-  /// Copies of the newest lists predicted to `at`, marked stale. Changes no state.
+  /// Copies of the newest lists predicted to `at` (not before the newest frame), marked stale, all
+  /// sectors blind; empty once a hidden vehicle would be given up. Changes no state.
   void PredictedLists(Timestamp at, Outputs& outputs) const;
 
   /// Newest time of any own-sensor frame; the clock of everything that is published.

@@ -134,16 +134,17 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
                                            const LocalFrame& frame) {
   const LocalTrack& track = sensed.track;
   vehicle.extent = track.extent;
+  const Extent extent = track.ModelExtent();
   for (const SensorUpdate& update : frame.updates) {
     if (update.track_id != track.id) continue;
     const StateVector x = vehicle.filter.kinematics().mean;
     std::optional<Linearized> linear;
     if (const auto* radar = std::get_if<RadarMeasurement>(&update.measurement)) {
       linear =
-          LinearizeRadar(x, track.extent, frame.ego,
+          LinearizeRadar(x, extent, frame.ego,
                          settings_->vehicle.radars[static_cast<std::size_t>(radar->radar)], *radar);
     } else if (const auto* camera = std::get_if<CameraMeasurement>(&update.measurement)) {
-      linear = LinearizeCamera(x, track.extent, frame.ego,
+      linear = LinearizeCamera(x, extent, frame.ego,
                                settings_->vehicle.cameras[static_cast<std::size_t>(camera->camera)],
                                *camera);
     }

@@ -253,6 +253,24 @@ TEST(Perception, AStaleCopyChangesNothing) {
   }
 }
 
+TEST(Perception, SilenceOfAllSensorsEndsInAnEmptyBlindList) {
+  Perception perception(PerceptionConfig{}, std::make_unique<NullBiasEstimator>());
+  Outputs outputs;
+  for (const Input& input : MakeInputs(Traffic())) perception.Step(input, outputs);
+  perception.PredictedLists(perception.newest_frame() + FromSeconds(1.0), outputs);
+  ASSERT_TRUE(outputs.has_lists);
+  EXPECT_FALSE(outputs.local.tracks.empty());
+  EXPECT_FALSE(outputs.priority.tracks.empty());
+  perception.PredictedLists(perception.newest_frame() + FromSeconds(10.0), outputs);
+  ASSERT_TRUE(outputs.has_lists);
+  EXPECT_TRUE(outputs.local.stale);
+  EXPECT_TRUE(outputs.local.tracks.empty());
+  EXPECT_TRUE(outputs.priority.tracks.empty());
+  for (const SectorHealth& sector : outputs.local.sectors) {
+    EXPECT_EQ(sector.state, SectorState::kBlind);
+  }
+}
+
 TEST(Perception, ALogPlayedAgainStartsAgain) {
   const auto inputs = MakeInputs(Traffic());
   std::vector<Input> twice = inputs;
