@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// v2vouch-import as its users meet it: a child process.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "daemon/io/event_log.h"
+#include "tests/sim/import/files.h"
+
+namespace v2vouch::sim {
+namespace {
+
+using testing::HasSubstr;
+
+struct Finished {
+  int code = -1;
+  std::string output;  // Both streams.
+};
+
+Finished Import(const std::string& arguments) {
+  const std::string command = std::string("'") + V2VOUCH_IMPORT + "' " + arguments + " 2>&1";
+  Finished finished;
+  std::FILE* const pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return finished;
+  std::array<char, 4096> chunk{};
+  while (std::fgets(chunk.data(), static_cast<int>(chunk.size()), pipe) != nullptr) {
+    finished.output += chunk.data();
+  }
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) finished.code = WEXITSTATUS(status);
+  return finished;
+}
+
+// One second of a drive with one car 30 m ahead.
+void WriteDrive(const ScratchFolder& folder) {
+  std::string radar = "t_boot_s,long_dist_m,lat_left_m,rel_speed_mps,can_address,new_track\n";
+  std::string speed = "t_boot_s,speed_mps\n";
+  std::string gyro = "t_boot_s,gz_radps\n";
+  std::string fixes = "t_boot_s,lat_deg,lon_deg,speed_mps,utc_ms,alt_m,bearing_deg\n";
+  for (int k = 0; k < 100; ++k) {
+    const std::string t = std::to_string(10.0 + 0.01 * k);
+    speed += t + ",10\n";
+    gyro += t + ",0.01\n";
+    if (k % 5 == 0) radar += t + ",32.7,0.5,-1,535,0\n";
+    if (k % 10 == 0) {
+      fixes += t + ",37,-122,10," + std::to_string(1533226488000 + 10 * k) + ",5,2\n";
+    }
+  }
+  folder.Write("radar_tracks.csv", radar);
+  folder.Write("ego_speed.csv", speed);
+  folder.Write("imu_fwd_right_down.csv", gyro);
+  folder.Write("gnss_ublox.csv", fixes);
+}
+
+TEST(V2vouchImport, TellsUsageErrorsFromFailures) {
+  EXPECT_EQ(Import("--version").code, 0);
+  EXPECT_THAT(Import("--help").output, HasSubstr("Examples:"));
+  EXPECT_EQ(Import("").code, 2);
+  EXPECT_EQ(Import("comma2k19").code, 2);
+  EXPECT_EQ(Import("sumo-fcd f.csv --out-scenario o --v2v-share 1.5").code, 2);
+  const Finished missing = Import("comma2k19 /nonexistent --out /tmp/x.lcm");
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_THAT(missing.output, HasSubstr("/nonexistent/radar_tracks.csv: cannot be opened"));
+}
+
+TEST(V2vouchImport, ADriveBecomesALogOfAllItsChannels) {
+  const ScratchFolder folder("import");
+  WriteDrive(folder);
+  const std::string log = folder.path() + "/drive.lcm";
+  const Finished finished = Import("comma2k19 " + folder.path() + " --out " + log + " --json");
+  ASSERT_EQ(finished.code, 0) << finished.output;
+  EXPECT_THAT(finished.output, HasSubstr("\"events\":130"));
+  std::string error;
+  const auto reader = LogReader::Open(log, error);
+  ASSERT_NE(reader, nullptr) << error;
+  std::map<std::string, int> channels;
+  LogEvent event;
+  while (reader->Next(event)) ++channels[event.channel];
+  const std::map<std::string, int> expected{
+      {"EGO_GNSS", 10}, {"EGO_MOTION", 100}, {"RADAR_FRONT", 20}};
+  EXPECT_EQ(channels, expected);
+}
+
+TEST(V2vouchImport, ALogThatCannotBeWrittenIsAFailure) {
+  const ScratchFolder folder("import");
+  WriteDrive(folder);
+  EXPECT_EQ(Import("comma2k19 " + folder.path() + " --out /nonexistent/drive.lcm").code, 1);
+}
+
+TEST(V2vouchImport, AFaultyTableNamesItsLine) {
+  const ScratchFolder folder("import");
+  const std::string table =
+      folder.Write("fcd.csv",
+                   "time_s,id,type,lon_deg,lat_deg,x_m,y_m,heading_deg_cw_from_north,speed_mps\n"
+                   "0.0,a,car,7,51,0,0,90,10\n0.1,a,car,7,51,one,0,90,10\n");
+  const Finished finished = Import("sumo-fcd " + table + " --out-scenario " + folder.path() + "/s");
+  EXPECT_EQ(finished.code, 1);
+  EXPECT_THAT(finished.output, HasSubstr("fcd.csv:3: x_m = \"one\" is not a number"));
+}
+
+}  // namespace
+}  // namespace v2vouch::sim
