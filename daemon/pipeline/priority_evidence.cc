@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "daemon/base/angle.h"
+#include "daemon/pipeline/local_perception.h"
 
 namespace v2vouch {
 namespace {
@@ -55,16 +56,6 @@ SectorState HealthAt(const Eigen::Vector2d& p_O, const LocalFrame& frame) {
   return StateAt(std::atan2(p_B.y_m, p_B.x_m), std::hypot(p_B.x_m, p_B.y_m), frame.sectors);
 }
 
-Occluder FootprintFor(const LocalTrack& track) {
-  const auto& P = track.state_O.covariance;
-  return {.id = track.id,
-          .centre_O = track.state_O.mean.head<2>(),
-          .yaw_rad = track.state_O.mean[kYaw],
-          .length_m = track.extent.length_m,
-          .width_m = track.extent.width_m,
-          .position_sigma_m = std::sqrt(std::max(0.0, 0.5 * (P(kX, kX) + P(kY, kY))))};
-}
-
 bool Covers(View view) { return view == View::kClear || view == View::kUnknown; }
 
 }  // namespace
@@ -104,7 +95,7 @@ CoObservation ForTrust(const ClaimInOdometry& claim, const KinematicState& sense
 bool AreSensorsSure(const LocalTrack& track, const LocalFrame& frame, const VisibilityMap& map,
                     const VehicleConfig& vehicle, const SensorSupportConfig& config) {
   if (track.radar_hits >= config.radar_hits && track.camera_hits >= config.camera_hits) return true;
-  const Occluder footprint = FootprintFor(track);
+  const Occluder footprint = FootprintOf(track);
   bool radar_covers = false;
   bool camera_covers = false;
   for (int i = 0; i < static_cast<int>(vehicle.radars.size()); ++i) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "daemon/base/angle.h"
+#include "daemon/data/object_class.h"
 #include "daemon/wire/codec.h"
 #include "daemon/wire/sensor_conversion.h"
 #include "v2vouch/calibration_t.hpp"
@@ -155,7 +156,7 @@ void EncodeDetections(const CameraDetections& detections, const std::string& sen
     box.width_px = from.width_px;
     box.height_px = from.height_px;
     box.class_id = -1;
-    box.class_name = NameOfClass(from.object_class);
+    box.class_name = ObjectClassName(from.object_class);
     box.score = from.score;
     to.boxes.push_back(box);
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "daemon/base/angle.h"
+#include "daemon/data/object_class.h"
 
 namespace v2vouch::wire {
 namespace {
@@ -58,14 +59,8 @@ MessageHeader Header(const Message& message, double clock_offset_s, Timestamp re
   return {FromMicros(message.utime) + FromSeconds(clock_offset_s), received, message.seq};
 }
 
-constexpr std::pair<std::string_view, ObjectClass> kClassNames[] = {
-    {"car", ObjectClass::kCar},
-    {"van", ObjectClass::kVan},
-    {"truck", ObjectClass::kTruck},
-    {"bus", ObjectClass::kBus},
-    {"motorcycle", ObjectClass::kMotorcycle},
-    {"pedestrian", ObjectClass::kPedestrian},
-    {"cyclist", ObjectClass::kCyclist},
+// What detectors trained on COCO call them.
+constexpr std::pair<std::string_view, ObjectClass> kOtherNames[] = {
     {"motorbike", ObjectClass::kMotorcycle},
     {"person", ObjectClass::kPedestrian},
     {"bicycle", ObjectClass::kCyclist}};
@@ -78,17 +73,10 @@ bool IsPlausibleTime(std::int64_t utime) {
 }
 
 ObjectClass ClassOfName(std::string_view name) {
-  for (const auto& [known, object_class] : kClassNames) {
+  for (const auto& [known, object_class] : kOtherNames) {
     if (known == name) return object_class;
   }
-  return ObjectClass::kUnknown;
-}
-
-std::string_view NameOfClass(ObjectClass object_class) {
-  for (const auto& [name, known] : kClassNames) {
-    if (known == object_class) return name;
-  }
-  return "";
+  return ObjectClassOf(name).value_or(ObjectClass::kUnknown);
 }
 
 Result<RadarScan> FromWire(const radar_scan_t& message, const RadarConfig& radar, int index,

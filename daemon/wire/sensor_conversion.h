@@ -28,7 +28,6 @@ Result<GnssFix> FromWire(const gnss_fix_t& message, Timestamp received);
 
 /// kUnknown for a name we do not know; COCO's names for the same things are taken too.
 ObjectClass ClassOfName(std::string_view name);
-std::string_view NameOfClass(ObjectClass object_class);
 
 /// Whether a stamp can be a time at all: after 1970 and before 2200.
 bool IsPlausibleTime(std::int64_t utime);

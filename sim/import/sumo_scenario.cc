@@ -8,6 +8,7 @@
 
 #include "daemon/base/angle.h"
 #include "daemon/base/random.h"
+#include "daemon/data/object_class.h"
 #include "daemon/data/vehicle.h"
 #include "sim/import/intersection.h"
 
@@ -28,25 +29,9 @@ __attribute__((format(printf, 2, 3))) void Append(std::string& text, const char*
   text += line;
 }
 
-const char* ClassName(ObjectClass object_class) {
-  switch (object_class) {
-    case ObjectClass::kVan:
-      return "van";
-    case ObjectClass::kTruck:
-      return "truck";
-    case ObjectClass::kBus:
-      return "bus";
-    case ObjectClass::kMotorcycle:
-      return "motorcycle";
-    case ObjectClass::kCyclist:
-      return "cyclist";
-    case ObjectClass::kPedestrian:
-      return "pedestrian";
-    case ObjectClass::kUnknown:
-    case ObjectClass::kCar:
-      break;
-  }
-  return "car";
+// What SUMO does not say is a car.
+std::string_view NameIn(ObjectClass object_class) {
+  return ObjectClassName(object_class == ObjectClass::kUnknown ? ObjectClass::kCar : object_class);
 }
 
 // The part of the recording that becomes the scenario.
@@ -108,8 +93,8 @@ void AppendRows(std::string& csv, std::size_t id, const FcdBody& body,
     if (sample.time_s < cut.from_s || sample.time_s > cut.to_s) continue;
     const Eigen::Vector2d place = sample.centre - cut.origin;
     Append(csv, "%.3f,%zu,%s,%.4f,%.4f,%.6f,%.4f,%.2f,%.2f\n", sample.time_s - cut.from_s, id,
-           ClassName(body.object_class), place.x(), place.y(), sample.yaw_rad, sample.speed_mps,
-           body.length_m, body.width_m);
+           std::string(NameIn(body.object_class)).c_str(), place.x(), place.y(), sample.yaw_rad,
+           sample.speed_mps, body.length_m, body.width_m);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/data/object_class.h"
 #include "sim/sensors/subject.h"
 
 namespace v2vouch::sim {
@@ -15,27 +16,6 @@ constexpr double kRay_rad = FromDegrees(0.05);
 double HalfSpan(const CameraConfig& camera) {
   const double side = std::max(camera.cx_px, camera.image_width_px - camera.cx_px);
   return std::min(FromDegrees(85.0), std::atan(side / camera.fx_px) * 1.05);
-}
-
-const char* NameOf(ObjectClass object_class) {
-  switch (object_class) {
-    case ObjectClass::kCar:
-      return "car";
-    case ObjectClass::kVan:
-      return "van";
-    case ObjectClass::kTruck:
-      return "truck";
-    case ObjectClass::kBus:
-      return "bus";
-    case ObjectClass::kMotorcycle:
-      return "motorcycle";
-    case ObjectClass::kPedestrian:
-      return "pedestrian";
-    case ObjectClass::kCyclist:
-      return "cyclist";
-    default:
-      return "";
-  }
 }
 
 ObjectClass Confused(ObjectClass object_class) {
@@ -246,7 +226,7 @@ void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
       if (box.width_px < 3.0 || box.height_px < 4.0) continue;
     }
     box.class_id = static_cast<std::int32_t>(named);
-    box.class_name = NameOf(named);
+    box.class_name = ObjectClassName(named);
     picture.boxes.push_back(box);
   }
 
@@ -262,7 +242,7 @@ void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
                               height - box.height_px);
       box.score = std::min(0.99, camera_.min_score + common.Uniform(0.0, 0.3));
       box.class_id = static_cast<std::int32_t>(ObjectClass::kCar);
-      box.class_name = NameOf(ObjectClass::kCar);
+      box.class_name = ObjectClassName(ObjectClass::kCar);
       picture.boxes.push_back(box);
     }
   }

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "daemon/data/object_class.h"
+
 namespace v2vouch::sim {
 namespace {
 
@@ -246,14 +248,6 @@ bool LoadTrajectories(const std::string& path, std::map<std::uint32_t, Recorded>
     problems.push_back(path + ":1: the first line must be " + kHeader);
     return false;
   }
-  static const std::map<std::string, ObjectClass> kClasses = {
-      {"car", ObjectClass::kCar},
-      {"van", ObjectClass::kVan},
-      {"truck", ObjectClass::kTruck},
-      {"bus", ObjectClass::kBus},
-      {"motorcycle", ObjectClass::kMotorcycle},
-      {"pedestrian", ObjectClass::kPedestrian},
-      {"cyclist", ObjectClass::kCyclist}};
   for (int number = 2; std::getline(file, line); ++number) {
     if (line.empty()) continue;
     std::replace(line.begin(), line.end(), ',', ' ');
@@ -262,15 +256,15 @@ bool LoadTrajectories(const std::string& path, std::map<std::uint32_t, Recorded>
     std::uint32_t id = 0;
     std::string name;
     text >> time >> id >> name >> x >> y >> yaw >> speed >> length >> width;
-    const auto known = kClasses.find(name);
+    const auto known = ObjectClassOf(name);
     Recorded& vehicle = vehicles[id];
     const bool ordered = vehicle.rows.empty() || time > vehicle.rows.back().time_s;
-    if (!text || id == 0 || known == kClasses.end() || !ordered || length <= 0.0 || width <= 0.0) {
+    if (!text || id == 0 || !known || !ordered || length <= 0.0 || width <= 0.0) {
       problems.push_back(path + ":" + std::to_string(number) +
                          ": not a row of increasing time with id above 0 and a known class");
       return false;
     }
-    vehicle.object_class = known->second;
+    vehicle.object_class = *known;
     vehicle.length_m = length;
     vehicle.width_m = width;
     vehicle.rows.push_back({time, {x, y}, yaw});
