@@ -47,7 +47,8 @@ Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, double yaw_rad, co
 /// q moves with the vehicle's speed and yaw rate x offset, the antenna with the ego's speed, yaw
 /// rate and lever arm. R adds to the measurement's own covariance: the spread of reflections over
 /// the visible faces divided by their number, a share of it that does not average out, and the
-/// ego's speed and yaw-rate noise. Extent {0, 0} is an ideal point target.
+/// ego's speed and yaw-rate noise; where visible_share < 1, what the unseen part may shift the mean
+/// by, as a lasting error. Extent {0, 0} is an ideal point target.
 /// @return nullopt when the target is closer than 0.1 m to the antenna.
 std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& extent,
                                          const EgoState& ego, const RadarConfig& radar,

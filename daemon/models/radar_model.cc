@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "daemon/base/angle.h"
@@ -16,6 +17,9 @@ constexpr double kPoint_m = 1e-3;
 // Share of the reflections' spread that more reflections do not remove: scatterers sit where the
 // body puts them (wheels, corners, plate) and stay there from scan to scan.
 constexpr double kLastingSpread = 0.04;
+// What is not seen shifts the mean of the rest, by up to half of its own length: for one face
+// (1 - s)^2 x spread. The same part stays unseen from scan to scan: so many looks count as one.
+constexpr double kUnseenLooks = 8.0;
 // Yaw rate that an estimate of it may miss while a vehicle begins to turn.
 constexpr double kYawRateDoubt_radps = 0.15;
 
@@ -157,8 +161,10 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
     Eigen::Matrix<double, 3, 2> G;  // d(range, azimuth, range rate)/d(reflection point)
     G.row(0) = line.transpose();
     G.row(1) = across.transpose() / range.value;
-    // A point to the left of the line moves towards or away by the vehicle's yaw rate.
-    G.row(2) = -x[kYawRate] * across.transpose();
+    // A point to the left of the line moves towards or away by the vehicle's yaw rate, and the line
+    // to it takes another share of the velocity: a passing car's nose comes while its tail goes.
+    const double passing_mps = across.dot(Eigen::Vector2d(vx.value, vy.value));
+    G.row(2) = (passing_mps / range.value - x[kYawRate]) * across.transpose();
     const Eigen::Matrix3d spread = G * spread_O * G.transpose();
     const double n = std::max(measurement.returns, 1);
     const Eigen::Array3d sensor(radar.range_sigma_m, radar.azimuth_sigma_rad,
@@ -172,6 +178,9 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
     mean.diagonal().array() += given.min(sensor.square() / n);
     R.diagonal().setZero();
     R += mean + kLastingSpread * spread;
+    // With a part unseen the rest's mean is displaced.
+    const double unseen = std::clamp(1.0 - measurement.visible_share, 0.0, 1.0);
+    R += kUnseenLooks * unseen * unseen * spread;
     // The yaw rate is not known that well: off-centre points move by what is wrong with it.
     R(2, 2) += kYawRateDoubt_radps * kYawRateDoubt_radps * across.dot(spread_O * across) / n;
     const Eigen::Array3d missing = given - mean.diagonal().array();

@@ -114,6 +114,9 @@ Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoS
   const bool is_radar = kind == Kind::kRadar;
   const SensorView seen = is_radar ? visibility_.FromRadar(sensor, footprint)
                                    : visibility_.FromCamera(sensor, footprint);
+  result.visible_share = seen.uncovered;
+  result.left_is_covered = seen.left_is_covered;
+  result.right_is_covered = seen.right_is_covered;
   const auto index = static_cast<std::size_t>(sensor);
   double full = 0.0;
   if (is_radar) {

@@ -38,6 +38,11 @@ constexpr double kInitialAccelSigma_mps2 = 1.5;
 constexpr double kYoung_s = 0.7;
 // The spread of a cluster speaks about the size only where it is not absurd.
 constexpr double kSpanGate = 9.0;
+// Clusters of a vehicle of which less is visible do not measure its size: what covers it may have
+// given them a reflection.
+constexpr double kSpanShare = 0.9;
+// Of the unseen part of a point target: see LinearizeRadar.
+constexpr double kUnseenLooks = 8.0;
 
 using Vector = Linearized::Vector;
 using PointJacobian = Eigen::Matrix<double, Eigen::Dynamic, 4, 0, Linearized::kMaxRows, 4>;
@@ -62,6 +67,9 @@ Eigen::Matrix3d PointNoise(const RadarMeasurement& z, const RadarConfig& radar) 
                                square(kReflectionAcrossSigma_m / z.range_m)) /
                                   n) +
             square(kPointAcrossSigma_m / z.range_m);
+  const double unseen = kUnseenLooks * square(std::clamp(1.0 - z.visible_share, 0.0, 1.0));
+  R(0, 0) += unseen * square(kReflectionRadialSigma_m);
+  R(1, 1) += unseen * square(kReflectionAcrossSigma_m / z.range_m);
   return R;
 }
 
@@ -301,7 +309,7 @@ bool TrackFilter::Update(const RadarLook& look, const RadarMeasurement& z,
   seen_from_ = look.origin_O();
   if (is_vehicle_) {
     if (!UpdateVehicle(look, z, settings)) return false;
-    if (settings.point_targets) return true;
+    if (settings.point_targets || z.visible_share < kSpanShare) return true;
     const auto span = LinearizeSpan(vehicle_, look.ego, look.radar, z);
     if (!span) return true;
     const auto likelihood = EvaluateExtended(*span, vehicle_);

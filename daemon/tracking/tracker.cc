@@ -70,6 +70,18 @@ bool IsSenior(const LocalTrack& a, const LocalTrack& b) {
   return a.id < b.id;
 }
 
+// Size of the space that clutter of a kind spreads over. That of a box has as many dimensions as it
+// has usable edges; radar measurements differ in none.
+double Cells(const CameraMeasurement& z, const CameraLook& look) {
+  const double half_fov_rad = std::atan2(0.5 * look.camera.image_width_px, look.camera.fx_px);
+  double cells = 1.0;
+  if (!z.left_is_cut || !z.right_is_cut) cells *= 2.0 * half_fov_rad;
+  if (!z.left_is_cut && !z.right_is_cut) cells *= kBoxWidthSpan_rad;
+  if (!z.bottom_is_cut) cells *= kDepressionSpan_rad;
+  return cells;
+}
+double Cells(const RadarMeasurement&, const RadarLook&) { return 1.0; }
+
 double BirthExistence(double births, double clutter) {
   return std::clamp(births / (births + clutter), kMinBirth, kMaxBirth);
 }
@@ -122,25 +134,44 @@ void Tracker::Predict(Timestamp stamp) {
 void Tracker::AskDetectability(const DetectabilityOf& detectability) {
   detection_.resize(tracks_.size());
   missed_.resize(tracks_.size());
+  seen_.clear();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const Detectability answer = detectability(tracks_[i]);
     detection_[i] = std::clamp(answer.probability, 0.0, 0.999);
     tracks_[i].visibility = answer.visibility;
+    seen_.push_back(answer);
     missed_[i] = 1.0 - tracks_[i].existence * detection_[i];
   }
 }
 
+RadarMeasurement Tracker::Given(std::size_t track, const RadarMeasurement& z) const {
+  RadarMeasurement given = z;
+  given.visible_share = seen_[track].visible_share;
+  return given;
+}
+
+CameraMeasurement Tracker::Given(std::size_t track, const CameraMeasurement& z) const {
+  CameraMeasurement given = z;
+  // A point has no edges: half a box still tells it more than none.
+  if (!hidden_[track].filter.is_vehicle()) return given;
+  given.left_is_cut |= seen_[track].left_is_covered;
+  given.right_is_cut |= seen_[track].right_is_covered;
+  return given;
+}
+
 template <class Look, class Measurement>
 void Tracker::GatePair(std::size_t track, std::size_t measurement, const Look& look,
-                       const Measurement& z) {
+                       const Measurement& raw) {
+  const Measurement z = Given(track, raw);
   const auto likelihood = hidden_[track].filter.Evaluate(look, z, settings_);
   if (!likelihood) return;
   if (likelihood->distance_squared > gate_[static_cast<std::size_t>(likelihood->rows)]) return;
   const double log_likelihood =
       -0.5 * (likelihood->distance_squared + likelihood->log_det + likelihood->rows * kLog2Pi);
   const double detection = std::max(detection_[track], kMinDetection);
-  const double log_ratio =
-      log_likelihood + std::log(detection) - candidates_[measurement].log_density;
+  const double log_ratio = log_likelihood + std::log(detection) -
+                           candidates_[measurement].log_density -
+                           std::log(Cells(raw, look) / Cells(z, look));
   const double existence = tracks_[track].existence;
   const double counted = std::max(existence, kAssignmentExistence);
   // Cost against leaving the track alone and calling the measurement clutter or a newcomer.
@@ -220,6 +251,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
     for (std::size_t j = 0; j < measurements.size(); ++j) {
       if (owner_[j] == static_cast<int>(i)) z = JoinClusters(z, measurements[j]);
     }
+    z = Given(i, z);
     if (!hidden_[i].filter.Update(look, z, settings_)) {
       failures_.push_back(Reason::kTrackNumerics);
       hidden_[i].is_dead = true;
@@ -262,13 +294,9 @@ void Tracker::PrepareCamera(const CameraLook& look,
   candidates_.Clear();
   for (const CameraMeasurement& z : measurements) {
     Candidate candidate;
-    // The space of a box has as many dimensions as it has usable edges.
-    double cells = 1.0;
-    if (!z.left_is_cut || !z.right_is_cut) cells *= 2.0 * half_fov_rad;
-    if (!z.left_is_cut && !z.right_is_cut) cells *= kBoxWidthSpan_rad;
-    if (!z.bottom_is_cut) cells *= kDepressionSpan_rad;
     candidate.birth_existence = birth_existence;
-    candidate.log_density = std::log(camera.clutter_per_image / cells / (1.0 - birth_existence));
+    candidate.log_density =
+        std::log(camera.clutter_per_image / Cells(z, look) / (1.0 - birth_existence));
     candidate.may_start = IsFinite(z);
     candidates_.Add(candidate);
   }
@@ -306,7 +334,7 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
 
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (assigned_[i] < 0) continue;
-    const CameraMeasurement& z = measurements[static_cast<std::size_t>(assigned_[i])];
+    const CameraMeasurement z = Given(i, measurements[static_cast<std::size_t>(assigned_[i])]);
     candidates_[static_cast<std::size_t>(assigned_[i])].may_start = false;
     Vote(i, z);
     if (!hidden_[i].filter.Update(look, z, settings_)) {
@@ -366,6 +394,7 @@ void Tracker::Start(const TrackFilter& filter, int sensor, std::size_t index, do
   LocalTrack track;
   track.id = id;
   track.start = now_;
+  track.is_point = settings_.point_targets;
   track.existence = std::max(existence, kMinBirth);
   filter.Show(settings_, track);
   Hidden hidden;

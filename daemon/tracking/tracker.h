@@ -59,6 +59,9 @@ struct TrackerConfig {
 struct Detectability {
   double probability = 0.0;
   Visibility visibility = Visibility::kVisible;
+  double visible_share = 1.0;    ///< Of its azimuth span, to this sensor.
+  bool left_is_covered = false;  ///< Its left edge is hidden from this sensor or out of its view.
+  bool right_is_covered = false;
 };
 using DetectabilityOf = std::function<Detectability(const LocalTrack&)>;
 
@@ -116,6 +119,9 @@ class Tracker {
   void PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void PrepareCamera(const CameraLook& look, std::span<const CameraMeasurement> measurements);
   void AskDetectability(const DetectabilityOf& detectability);
+  /// The measurement as one of this track, with what visibility knows about its edges.
+  [[nodiscard]] RadarMeasurement Given(std::size_t track, const RadarMeasurement& z) const;
+  [[nodiscard]] CameraMeasurement Given(std::size_t track, const CameraMeasurement& z) const;
   void Associate(std::size_t measurements);
   void AbsorbClusters(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   bool Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,
@@ -142,6 +148,7 @@ class Tracker {
   // Scratch of one update, kept for its memory.
   Candidates candidates_;
   std::vector<double> detection_, missed_, lone_;
+  std::vector<Detectability> seen_;
   std::vector<SparsePair> costs_;
   std::vector<GatedPair> pairs_;
   std::vector<int> by_x_, assigned_, owner_;

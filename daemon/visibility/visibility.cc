@@ -24,6 +24,8 @@ constexpr double kDepthBlur_m = 0.3;
 constexpr double kLeastInView = 0.1;
 constexpr double kClearShare = 0.9;
 constexpr double kOccludedShare = 0.8;
+// The outer part of a silhouette, one in so many, decides whether its edge is seen.
+constexpr double kEdgeShare = 6.0;
 
 // `bearing_O` within three half circles.
 std::size_t BinOf(double bearing_O) {
@@ -260,6 +262,7 @@ SensorView VisibilityMap::See(const Sensor& sensor, const Occluder& footprint) c
   double covered_sum = 0.0;
   double uncovered_sum = 0.0;
   double clear_count = 0.0;
+  std::array<double, kRays> cover;
   const double step = (fan.left_rad - fan.right_rad) / kRays;
   const double first = fan.right_rad + 0.5 * step;
   Eigen::Matrix2d turn;
@@ -270,6 +273,7 @@ SensorView VisibilityMap::See(const Sensor& sensor, const Occluder& footprint) c
     const double inside_m = std::min(a - target.right_rad, target.left_rad - a) * centre_m;
     const double weight = Ramp(inside_m, 3.0 * sigma_m);
     weight_sum += weight;
+    cover[static_cast<std::size_t>(k)] = 1.0;
     if (!is_inside && !sees(a)) continue;
 
     double covered = 0.0;
@@ -290,14 +294,29 @@ SensorView VisibilityMap::See(const Sensor& sensor, const Occluder& footprint) c
       if (viewpoint.any_cm[bin] < limit_cm) possibly = 1.0;
       if (viewpoint.structure_cm[bin] < limit_cm) covered = 1.0;
     }
+    cover[static_cast<std::size_t>(k)] = covered;
     seen_sum += weight;
     covered_sum += weight * covered;
     uncovered_sum += weight * (1.0 - 0.5 * (covered + possibly));
     clear_count += 1.0 - possibly;
   }
 
+  const auto is_edge_covered = [&](double from_rad, double to_rad) {
+    double covered = 0.0;
+    int count_in = 0;
+    for (int k = 0; k < kRays; ++k) {
+      const double a = first + step * k;
+      if (a < from_rad || a > to_rad) continue;
+      covered += cover[static_cast<std::size_t>(k)];
+      ++count_in;
+    }
+    return count_in > 0 && covered > 0.5 * count_in;
+  };
   if (!(seen_sum >= kLeastInView * weight_sum) || seen_sum <= 0.0) return {};
   SensorView result = {View::kUnknown, uncovered_sum / weight_sum};
+  const double edge_rad = std::max((target.left_rad - target.right_rad) / kEdgeShare, step);
+  result.left_is_covered = is_edge_covered(target.left_rad - edge_rad, target.left_rad);
+  result.right_is_covered = is_edge_covered(target.right_rad, target.right_rad + edge_rad);
   if (clear_count >= kClearShare * kRays && stays_in_range) {
     result.view = View::kClear;
   } else if (covered_sum >= kOccludedShare * seen_sum) {

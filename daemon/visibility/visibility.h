@@ -40,6 +40,8 @@ enum class View : std::uint8_t { kClear, kOccluded, kUnknown, kOutOfView };
 struct SensorView {
   View view = View::kOutOfView;
   double uncovered = 0.0;  ///< Share of its azimuth span inside the field of view and not covered.
+  bool left_is_covered = false;   ///< The outer sixth of its own span at the left edge is covered
+  bool right_is_covered = false;  ///< or out of the field of view; at the right edge.
 };
 
 /// Azimuth-range occlusion round each sensor from tracked boxes and accumulated static returns

@@ -89,6 +89,41 @@ TEST(LinearizeSpan, SaysNothingForOneReturnOrObjects) {
   EXPECT_FALSE(LinearizeSpan(state, EgoState{}, RadarConfig{}, z));
 }
 
+// A radar that sees the front half of a passing car gets a mean half a length/2 ahead of that of
+// the whole side: with the share known, the car must hardly follow and say that it is unsure.
+TEST(UpdateExtended, PartlyVisibleSideDoesNotDragTheVehicle) {
+  RadarConfig radar;
+  radar.yaw_rad = 0.5 * kPi;
+  ExtendedState start;
+  start.mean << 0.0, 8.0, kPi, 10.0, 0.0, 0.0, 4.5, 1.8;
+  start.covariance.setZero();
+  start.covariance.diagonal() << 0.04, 0.04, 1e-4, 0.04, 1e-4, 0.01, 0.04, 0.01;
+  RadarMeasurement z;
+  z.returns = 4;
+  z.covariance = Eigen::Vector3d(0.02, 1e-4, 0.01).asDiagonal();
+  const Eigen::Vector2d half(-1.125, 7.1);
+  z.range_m = half.norm();
+  z.azimuth_rad = std::atan2(half.y(), half.x()) - radar.yaw_rad;
+  z.range_rate_mps = -10.0 * half.x() / half.norm();
+  double drag_m[2];
+  double sigma_m[2];
+  for (const bool is_known : {false, true}) {
+    ExtendedState state = start;
+    z.visible_share = is_known ? 0.5 : 1.0;
+    for (int i = 0; i < 6; ++i) {
+      const auto model = LinearizeRadar(state.mean.head<kStateSize>(), state.assumed_extent(),
+                                        EgoState{}, radar, z);
+      ASSERT_TRUE(model);
+      ASSERT_TRUE(UpdateExtended(*model, state, false));
+    }
+    drag_m[is_known] = std::abs(state.mean[kX]);
+    sigma_m[is_known] = std::sqrt(state.covariance(kX, kX));
+  }
+  EXPECT_GT(drag_m[0], 0.3);
+  EXPECT_LT(drag_m[1], 0.5 * drag_m[0]);
+  EXPECT_LT(drag_m[1], 2.5 * sigma_m[1]);
+}
+
 TEST(UpdateExtent, SilhouetteFromBehindTeachesTheWidthOnly) {
   Extent extent = ClassExtent(ObjectClass::kUnknown);
   const Extent before = extent;
