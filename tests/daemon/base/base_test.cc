@@ -9,7 +9,6 @@
 #include "daemon/base/random.h"
 #include "daemon/base/reason.h"
 #include "daemon/base/time.h"
-#include "daemon/frames/pose.h"
 
 namespace v2vouch {
 namespace {
@@ -47,7 +46,7 @@ TEST(RandomProperty, NormalHasItsMomentsAndIsRepeatable) {
     sum += x;
     squares += x * x;
   }
-  EXPECT_NEAR(sum / kDraws, 0.0, 0.01);      // 4.5 sigma of the mean.
+  EXPECT_NEAR(sum / kDraws, 0.0, 0.01);       // 4.5 sigma of the mean.
   EXPECT_NEAR(squares / kDraws, 1.0, 0.015);  // 4.7 sigma of the variance.
 }
 
@@ -65,23 +64,6 @@ TEST(Random, SubjectsAreIndependentOfEachOther) {
   EXPECT_NE(a.Bits(), b.Bits());
   Random first = Random::ForSubject(1, 1);
   EXPECT_EQ(first.Bits(), a_again.Bits());
-}
-
-TEST(PoseProperty, InverseUndoesAndChainsAssociate) {
-  Random random(20240611);
-  for (int i = 0; i < 500; ++i) {
-    const auto draw = [&] { return random.Uniform(-50.0, 50.0); };
-    const Pose<Odometry, Body> X_OB(draw(), draw(), draw());
-    const Pose<Body, Radar> X_BR(draw(), draw(), draw());
-    const Point<Radar> p_R{draw(), draw()};
-    const Point<Odometry> direct = (X_OB * X_BR) * p_R;
-    const Point<Odometry> nested = X_OB * (X_BR * p_R);
-    EXPECT_NEAR(direct.x_m, nested.x_m, 1e-11);
-    EXPECT_NEAR(direct.y_m, nested.y_m, 1e-11);
-    const Point<Radar> back = (X_OB * X_BR).Inverse() * direct;
-    EXPECT_NEAR(back.x_m, p_R.x_m, 1e-11);
-    EXPECT_NEAR(back.y_m, p_R.y_m, 1e-11);
-  }
 }
 
 }  // namespace
