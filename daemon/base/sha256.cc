@@ -24,41 +24,57 @@ void Sha256::Add(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const std::size_t filled = length_ % 64;
     const std::size_t taken = std::min(bytes.size(), 64 - filled);
-    std::copy_n(bytes.begin(), taken, rest_.begin() + static_cast<std::ptrdiff_t>(filled));
+    if (taken == 64) {  // A whole block need not be copied first.
+      Compress(bytes.data());
+    } else {
+      std::copy_n(bytes.begin(), taken, rest_.begin() + static_cast<std::ptrdiff_t>(filled));
+      if (filled + taken == 64) Compress(rest_.data());
+    }
     length_ += taken;
     bytes = bytes.subspan(taken);
-    if (length_ % 64 == 0) Compress(rest_.data());
   }
 }
 
-// FIPS 180-4, 6.2.2.
+// FIPS 180-4, 6.2.2. The letters do not move from round to round: eight rounds name them eight
+// ways. Of the message schedule the last sixteen words are kept.
 void Sha256::Compress(const std::uint8_t* block) {
-  std::array<std::uint32_t, 64> w{};
+  std::array<std::uint32_t, 16> w;
   for (std::size_t t = 0; t < 16; ++t) {
     w[t] = (std::uint32_t{block[4 * t]} << 24) | (std::uint32_t{block[4 * t + 1]} << 16) |
            (std::uint32_t{block[4 * t + 2]} << 8) | std::uint32_t{block[4 * t + 3]};
   }
-  for (std::size_t t = 16; t < 64; ++t) {
-    const std::uint32_t s0 = std::rotr(w[t - 15], 7) ^ std::rotr(w[t - 15], 18) ^ (w[t - 15] >> 3);
-    const std::uint32_t s1 = std::rotr(w[t - 2], 17) ^ std::rotr(w[t - 2], 19) ^ (w[t - 2] >> 10);
-    w[t] = w[t - 16] + s0 + w[t - 7] + s1;
-  }
   auto [a, b, c, d, e, f, g, h] = state_;
-  for (std::size_t t = 0; t < 64; ++t) {
-    const std::uint32_t sum1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
-    const std::uint32_t t1 = h + sum1 + ((e & f) ^ (~e & g)) + kRound[t] + w[t];
-    const std::uint32_t sum0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
-    const std::uint32_t t2 = sum0 + ((a & b) ^ (a & c) ^ (b & c));
-    h = g;
-    g = f;
-    f = e;
-    e = d + t1;
-    d = c;
-    c = b;
-    b = a;
-    a = t1 + t2;
+  using Word = std::uint32_t;
+  const auto round = [](Word a_, Word b_, Word c_, Word& d_, Word e_, Word f_, Word g_, Word& h_,
+                        Word added) {
+    const Word sum1 = std::rotr(e_, 6) ^ std::rotr(e_, 11) ^ std::rotr(e_, 25);
+    const Word t1 = h_ + sum1 + (g_ ^ (e_ & (f_ ^ g_))) + added;
+    const Word sum0 = std::rotr(a_, 2) ^ std::rotr(a_, 13) ^ std::rotr(a_, 22);
+    d_ += t1;
+    h_ = t1 + sum0 + ((a_ & b_) | (c_ & (a_ | b_)));
+  };
+  for (std::size_t t = 0; t < 64; t += 16) {
+    if (t > 0) {
+      for (std::size_t i = 0; i < 16; ++i) {
+        const Word w15 = w[(i + 1) % 16];
+        const Word w2 = w[(i + 14) % 16];
+        w[i] += (std::rotr(w15, 7) ^ std::rotr(w15, 18) ^ (w15 >> 3)) + w[(i + 9) % 16] +
+                (std::rotr(w2, 17) ^ std::rotr(w2, 19) ^ (w2 >> 10));
+      }
+    }
+    for (std::size_t i = 0; i < 16; i += 8) {
+      const auto added = [&](std::size_t j) { return kRound[t + i + j] + w[i + j]; };
+      round(a, b, c, d, e, f, g, h, added(0));
+      round(h, a, b, c, d, e, f, g, added(1));
+      round(g, h, a, b, c, d, e, f, added(2));
+      round(f, g, h, a, b, c, d, e, added(3));
+      round(e, f, g, h, a, b, c, d, added(4));
+      round(d, e, f, g, h, a, b, c, added(5));
+      round(c, d, e, f, g, h, a, b, added(6));
+      round(b, c, d, e, f, g, h, a, added(7));
+    }
   }
-  const std::array<std::uint32_t, 8> worked = {a, b, c, d, e, f, g, h};
+  const std::array<Word, 8> worked = {a, b, c, d, e, f, g, h};
   for (std::size_t i = 0; i < 8; ++i) state_[i] += worked[i];
 }
 

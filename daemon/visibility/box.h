@@ -19,16 +19,23 @@ struct Occluder {
   double position_sigma_m = 0.3;
 };
 
+/// An occluder with its axes worked out: every question asks for them.
+struct Box : Occluder {
+  explicit Box(const Occluder& occluder)
+      : Occluder(occluder), c(std::cos(occluder.yaw_rad)), s(std::sin(occluder.yaw_rad)) {}
+
+  double c;  ///< Cosine of its yaw, as s its sine.
+  double s;
+};
+
 /// p_O in the box's own axes, from its centre.
-inline Eigen::Vector2d InBox(const Occluder& box, const Eigen::Vector2d& p_O) {
-  const double c = std::cos(box.yaw_rad);
-  const double s = std::sin(box.yaw_rad);
+inline Eigen::Vector2d InBox(const Box& box, const Eigen::Vector2d& p_O) {
   const Eigen::Vector2d d = p_O - box.centre_O;
-  return {c * d.x() + s * d.y(), -s * d.x() + c * d.y()};
+  return {box.c * d.x() + box.s * d.y(), -box.s * d.x() + box.c * d.y()};
 }
 
 /// Whether the box, grown by `margin_m` on all sides, holds the point.
-inline bool Holds(const Occluder& box, const Eigen::Vector2d& p_O, double margin_m) {
+inline bool Holds(const Box& box, const Eigen::Vector2d& p_O, double margin_m) {
   const double reach_m = 0.5 * (box.length_m + box.width_m) + 2.0 * margin_m;
   if ((p_O - box.centre_O).squaredNorm() > reach_m * reach_m) return false;
   const Eigen::Vector2d q = InBox(box, p_O);
@@ -40,10 +47,10 @@ inline bool Holds(const Occluder& box, const Eigen::Vector2d& p_O, double margin
 /// ranges count from the point. Left uninitialised until Look() fills it: queries keep an array.
 struct Silhouette {
   /// @param sight unit vector of the line of sight, in O.
-  void Look(const Occluder& seen, const Eigen::Vector2d& from, const Eigen::Vector2d& sight) {
+  void Look(const Box& seen, const Eigen::Vector2d& from, const Eigen::Vector2d& sight) {
     const Eigen::Vector2d d = seen.centre_O - from;
-    c = std::cos(seen.yaw_rad);
-    s = std::sin(seen.yaw_rad);
+    c = seen.c;
+    s = seen.s;
     half = {0.5 * seen.length_m, 0.5 * seen.width_m};
     from_box = {-c * d.x() - s * d.y(), s * d.x() - c * d.y()};
     sigma_m = seen.position_sigma_m;

@@ -8,7 +8,6 @@ namespace v2vouch {
 
 std::vector<SectorHealth> VisibilityMap::Sectors(std::span<const char> radar_alive,
                                                  std::span<const char> camera_alive) const {
-  constexpr int kSectors = 12;
   constexpr double kSize = 2.0 * kPi / kSectors;
   struct Kind {
     bool is_mounted = false;
@@ -19,13 +18,12 @@ std::vector<SectorHealth> VisibilityMap::Sectors(std::span<const char> radar_ali
     SectorHealth& sector = sectors[static_cast<std::size_t>(i)];
     sector.from_rad = -kPi + kSize * i;
     sector.to_rad = -kPi + kSize * (i + 1);
-    const double middle = 0.5 * (sector.from_rad + sector.to_rad);
     Kind kinds[2];
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       const bool is_radar = s < radar_count_;
       const auto alive = is_radar ? radar_alive : camera_alive;
       const std::size_t index = is_radar ? s : s - radar_count_;
-      if (!sensors_[s].Sees(WrapAngle(middle - sensors_[s].yaw_rad))) continue;
+      if (!sensors_[s].covers[static_cast<std::size_t>(i)]) continue;
       Kind& kind = kinds[is_radar ? 0 : 1];
       kind.is_mounted = true;
       if (index >= alive.size() || !alive[index]) continue;

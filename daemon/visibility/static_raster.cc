@@ -6,13 +6,40 @@
 #include "daemon/base/angle.h"
 
 namespace v2vouch {
+namespace {
+
+constexpr std::size_t kDirections = 16;
+using Ring = std::array<Eigen::Vector2d, 2 * kDirections>;
+
+// Where the other cells of a wall would be: once round at 3 m, then at 4.5 m.
+Ring MakeRing() {
+  Ring ring;
+  std::size_t next = 0;
+  for (const double distance_m : {3.0, 4.5}) {
+    for (std::size_t i = 0; i < kDirections; ++i) {
+      const double angle = 2.0 * kPi * static_cast<double>(i) / kDirections;
+      ring[next++] = distance_m * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    }
+  }
+  return ring;
+}
+
+const Ring kRing = MakeRing();
+
+// std::floor is a call on plain x86-64.
+std::int64_t Floor(double value) {
+  const auto whole = static_cast<std::int64_t>(value);
+  return static_cast<double>(whole) > value ? whole - 1 : whole;
+}
+
+}  // namespace
 
 StaticRaster::StaticRaster(double cell_m, double hold_s, int min_hits)
     : cell_m_(cell_m), hold_(FromSeconds(hold_s)), min_hits_(std::min(min_hits, 250)) {}
 
 StaticRaster::Key StaticRaster::KeyOf(const Eigen::Vector2d& p_O) const {
   const auto index = [&](double value_m) {
-    return static_cast<std::uint16_t>(static_cast<std::int64_t>(std::floor(value_m / cell_m_)));
+    return static_cast<std::uint16_t>(Floor(value_m / cell_m_));
   };
   return {index(p_O.x()), index(p_O.y())};
 }
@@ -32,15 +59,10 @@ const StaticRaster::Cell* StaticRaster::Find(Key key) const {
 }
 
 bool StaticRaster::HasFarNeighbours(Timestamp now, const Eigen::Vector2d& p_O) const {
-  constexpr int kDirections = 16;
   int found = 0;
-  for (const double distance_m : {3.0, 4.5}) {
-    for (int i = 0; i < kDirections; ++i) {
-      const double angle = 2.0 * kPi * i / kDirections;
-      const Cell* cell =
-          Find(KeyOf(p_O + distance_m * Eigen::Vector2d(std::cos(angle), std::sin(angle))));
-      if (cell != nullptr && IsActive(*cell, now) && ++found == 2) return true;
-    }
+  for (const Eigen::Vector2d& offset : kRing) {
+    const Cell* cell = Find(KeyOf(p_O + offset));
+    if (cell != nullptr && IsActive(*cell, now) && ++found == 2) return true;
   }
   return false;
 }

@@ -28,13 +28,13 @@ class StaticRaster {
   template <class Visit>
   void ForEachActive(Timestamp now, const Eigen::Vector2d& near_O, Visit&& visit) const {
     const Key near = KeyOf(near_O);
+    const Eigen::Vector2d corner(std::floor(near_O.x() / cell_m_),
+                                 std::floor(near_O.y() / cell_m_));
     for (const Cell& cell : cells_) {
       if (!IsActive(cell, now)) continue;
       // Keys wrap; the difference to a place nearby does not.
       const auto dx = static_cast<std::int16_t>(static_cast<std::uint16_t>(cell.key.x - near.x));
       const auto dy = static_cast<std::int16_t>(static_cast<std::uint16_t>(cell.key.y - near.y));
-      const Eigen::Vector2d corner(std::floor(near_O.x() / cell_m_),
-                                   std::floor(near_O.y() / cell_m_));
       visit(Eigen::Vector2d((corner + Eigen::Vector2d(dx + 0.5, dy + 0.5)) * cell_m_),
             cell.is_structure);
     }

@@ -73,24 +73,48 @@ void VisibilityMap::AddSensor(const Sensor& sensor) {
     viewpoints_.back().structure_cm.fill(kNoReturn);
     viewpoints_.back().any_cm.fill(kNoReturn);
   }
-  sensors_.push_back(sensor);
-  sensors_.back().viewpoint = index;
+  Sensor& added = sensors_.emplace_back(sensor);
+  added.viewpoint = index;
+  constexpr double kSize = 2.0 * kPi / kSectors;
+  for (int i = 0; i < kSectors; ++i) {
+    const double middle_rad = 0.5 * ((-kPi + kSize * i) + (-kPi + kSize * (i + 1)));
+    added.covers[static_cast<std::size_t>(i)] = added.Sees(WrapAngle(middle_rad - added.yaw_rad));
+  }
+  const auto direction = [](double a) { return Eigen::Vector2d(std::cos(a), std::sin(a)); };
+  added.left_B = direction(added.yaw_rad + added.fov_left_rad);
+  added.right_B = direction(added.yaw_rad - added.fov_right_rad);
+  added.Place(ego_.X_OB, ego_.X_OB.rotation());
+}
+
+void VisibilityMap::Sensor::Place(const Pose<Odometry, Body>& X_OB, const Eigen::Matrix2d& R_OB) {
+  origin_O = (X_OB * Point<Body>{p_B.x(), p_B.y()}).vector();
+  left_O = R_OB * left_B;
+  right_O = R_OB * right_B;
+}
+
+// Up to half a circle of view, all of it lies on one side of the line through either edge.
+bool VisibilityMap::Sensor::IsSurelyOutside(const Eigen::Vector2d& d, double radius_m) const {
+  if (fov_left_rad + fov_right_rad > kPi) return false;
+  return left_O.x() * d.y() - left_O.y() * d.x() > radius_m ||
+         d.x() * right_O.y() - d.y() * right_O.x() > radius_m;
 }
 
 void VisibilityMap::AccumulateStatic(Timestamp stamp, const EgoState& ego,
                                      std::span<const RadarMeasurement> measurements) {
+  const Eigen::Matrix2d R_OB = ego.X_OB.rotation();
   for (const RadarMeasurement& m : measurements) {
     if (!m.is_static || m.radar < 0 || static_cast<std::size_t>(m.radar) >= radar_count_) continue;
     const Sensor& sensor = sensors_[static_cast<std::size_t>(m.radar)];
     const auto add = [&](double azimuth_rad) {
       const double bearing_B = sensor.yaw_rad + azimuth_rad;
-      const Point<Odometry> p =
-          ego.X_OB * Point<Body>{sensor.p_B.x() + m.range_m * std::cos(bearing_B),
-                                 sensor.p_B.y() + m.range_m * std::sin(bearing_B)};
-      for (const Occluder& box : occluders_) {
-        if (Holds(box, p.vector(), config_.margin_m + box.position_sigma_m)) return;
+      const double x_m = sensor.p_B.x() + m.range_m * std::cos(bearing_B);
+      const double y_m = sensor.p_B.y() + m.range_m * std::sin(bearing_B);
+      const Eigen::Vector2d p_O(ego.X_OB.x_m() + R_OB(0, 0) * x_m - R_OB(1, 0) * y_m,
+                                ego.X_OB.y_m() + R_OB(1, 0) * x_m + R_OB(0, 0) * y_m);
+      for (const Box& box : occluders_) {
+        if (Holds(box, p_O, config_.margin_m + box.position_sigma_m)) return;
       }
-      raster_.Add(stamp, p.vector());
+      raster_.Add(stamp, p_O);
     };
     // A wide flat cluster is a piece of wall across the ray: its reflections, no farther apart than
     // one clustering radius, stand for the wall between them. Of an oblique one only the mean is
@@ -109,7 +133,10 @@ void VisibilityMap::AccumulateStatic(Timestamp stamp, const EgoState& ego,
 
 void VisibilityMap::SetScene(const EgoState& ego, std::span<const Occluder> occluders) {
   ego_ = ego;
-  occluders_.assign(occluders.begin(), occluders.end());
+  const Eigen::Matrix2d R_OB = ego.X_OB.rotation();
+  for (Sensor& sensor : sensors_) sensor.Place(ego.X_OB, R_OB);
+  occluders_.clear();
+  for (const Occluder& occluder : occluders) occluders_.emplace_back(occluder);
   const double age_s = ToSeconds(ego.stamp - bins_built_);
   const bool is_due = !has_bins_ || age_s < 0.0 || age_s >= kBinsAge_s;
   for (Viewpoint& viewpoint : viewpoints_) {
@@ -145,18 +172,39 @@ void VisibilityMap::RebuildBins(Viewpoint& viewpoint) const {
   });
 }
 
-SensorView VisibilityMap::FromRadar(int index, const Occluder& footprint) const {
+const VisibilityMap::Sensor& VisibilityMap::RadarAt(int index) const {
   V2VOUCH_CHECK(index >= 0 && static_cast<std::size_t>(index) < radar_count_);
-  return See(sensors_[static_cast<std::size_t>(index)], footprint);
+  return sensors_[static_cast<std::size_t>(index)];
+}
+
+const VisibilityMap::Sensor& VisibilityMap::CameraAt(int index) const {
+  V2VOUCH_CHECK(index >= 0 && radar_count_ + static_cast<std::size_t>(index) < sensors_.size());
+  return sensors_[radar_count_ + static_cast<std::size_t>(index)];
+}
+
+SensorView VisibilityMap::FromRadar(int index, const Occluder& footprint) const {
+  return See(RadarAt(index), Box(footprint));
 }
 
 SensorView VisibilityMap::FromCamera(int index, const Occluder& footprint) const {
-  V2VOUCH_CHECK(index >= 0 && radar_count_ + static_cast<std::size_t>(index) < sensors_.size());
-  return See(sensors_[radar_count_ + static_cast<std::size_t>(index)], footprint);
+  return See(CameraAt(index), Box(footprint));
 }
 
 View VisibilityMap::Overall(const Occluder& footprint) const {
-  View best = View::kOutOfView;
+  return Ask(nullptr, Box(footprint)).overall;
+}
+
+VisibilityMap::Answer VisibilityMap::AskRadar(int index, const Occluder& footprint) const {
+  return Ask(&RadarAt(index), Box(footprint));
+}
+
+VisibilityMap::Answer VisibilityMap::AskCamera(int index, const Occluder& footprint) const {
+  return Ask(&CameraAt(index), Box(footprint));
+}
+
+// `first` looks first, if given: where it sees the place clear the others are not asked.
+VisibilityMap::Answer VisibilityMap::Ask(const Sensor* first, const Box& footprint) const {
+  Answer answer;
   const auto rank = [](View view) {
     switch (view) {
       case View::kClear:
@@ -170,23 +218,28 @@ View VisibilityMap::Overall(const Occluder& footprint) const {
     }
     return 0;
   };
-  for (const Sensor& sensor : sensors_) {
-    const View view = See(sensor, footprint).view;
-    if (view == View::kClear) return view;
-    if (rank(view) > rank(best)) best = view;
+  if (first != nullptr) {
+    answer.sensor = See(*first, footprint);
+    answer.overall = answer.sensor.view;
   }
-  return best;
+  for (const Sensor& sensor : sensors_) {
+    if (answer.overall == View::kClear) break;
+    if (&sensor == first) continue;
+    const View view = See(sensor, footprint).view;
+    if (rank(view) > rank(answer.overall)) answer.overall = view;
+  }
+  return answer;
 }
 
 // Boxes that may cover a ray of the fan [right, left] (angles from `sight`) nearer than
 // `farthest_m`.
-std::size_t VisibilityMap::CollectInTheWay(const Occluder& footprint, const Eigen::Vector2d& p_OS,
+std::size_t VisibilityMap::CollectInTheWay(const Box& footprint, const Eigen::Vector2d& p_OS,
                                            const Fan& fan, InTheWay& in_the_way) const {
   std::size_t count = 0;
   const double half_fan = std::max(fan.left_rad, -fan.right_rad);
   const double cos_fan = std::cos(half_fan);
   const double sin_fan = std::sin(half_fan);
-  for (const Occluder& box : occluders_) {
+  for (const Box& box : occluders_) {
     if (box.id != 0 && box.id == footprint.id) continue;
     const Eigen::Vector2d d = box.centre_O - p_OS;
     const double radius_m =
@@ -214,13 +267,17 @@ bool VisibilityMap::HasStaticNearer(const Viewpoint& viewpoint, const Fan& fan,
   }
 }
 
-SensorView VisibilityMap::See(const Sensor& sensor, const Occluder& footprint) const {
-  const Point<Odometry> origin = ego_.X_OB * Point<Body>{sensor.p_B.x(), sensor.p_B.y()};
-  const Eigen::Vector2d p_OS = origin.vector();
+SensorView VisibilityMap::See(const Sensor& sensor, const Box& footprint) const {
+  const Eigen::Vector2d& p_OS = sensor.origin_O;
   const Eigen::Vector2d to_centre = footprint.centre_O - p_OS;
   const double sigma_m = footprint.position_sigma_m;
   const double centre_m = to_centre.norm();
   if (centre_m > sensor.max_range_m || centre_m < sensor.min_range_m) return {};
+  // Most questions end here. Seen from the sensor the disc is wider than the fan of 3 sigma about
+  // the footprint: asin(a) + b <= asin(a + b). It also holds what the next line asks for.
+  const double disc_m =
+      0.5 * std::hypot(footprint.length_m, footprint.width_m) + 3.0 * sigma_m + 0.2;
+  if (sensor.IsSurelyOutside(to_centre, disc_m)) return {};
   if (Holds(footprint, p_OS, 0.1)) return {View::kUnknown, 1.0};  // Upon ourselves.
 
   Fan fan;
@@ -244,7 +301,7 @@ SensorView VisibilityMap::See(const Sensor& sensor, const Occluder& footprint) c
   const double past_left = azimuth + fan.right_rad - sensor.fov_left_rad;
   const double past_right = -sensor.fov_right_rad - (azimuth + fan.left_rad);
   if (std::max(past_left, past_right) > 0.0 && std::abs(azimuth) < kPi - 0.5 && widened < 0.25) {
-    return {};  // Most questions end here: far off the axis, and not by way of the seam.
+    return {};  // Far off the axis, and not by way of the seam.
   }
 
   const Viewpoint& viewpoint = viewpoints_[sensor.viewpoint];

@@ -85,6 +85,14 @@ class VisibilityMap {
   /// occluded if any has it in its field of view, else out of view.
   [[nodiscard]] View Overall(const Occluder& footprint) const;
 
+  /// One sensor's answer and Overall's at the price of little more than one look.
+  struct Answer {
+    SensorView sensor;
+    View overall = View::kOutOfView;
+  };
+  [[nodiscard]] Answer AskRadar(int index, const Occluder& footprint) const;
+  [[nodiscard]] Answer AskCamera(int index, const Occluder& footprint) const;
+
   /// Coverage by sector of 30 degrees, twelve from -180 degrees on; `radar_alive`, `camera_alive`
   /// say which sensors speak. A sensor covers a sector when it covers the sector's middle. Watched:
   /// of each kind (radar, camera) that is mounted for the sector one is alive. Degraded: of one
@@ -93,6 +101,8 @@ class VisibilityMap {
                                                   std::span<const char> camera_alive) const;
 
  private:
+  static constexpr int kSectors = 12;
+
   struct Sensor {
     Eigen::Vector2d p_B = Eigen::Vector2d::Zero();
     double yaw_rad = 0.0;
@@ -101,6 +111,17 @@ class VisibilityMap {
     double min_range_m = 0.0;
     double max_range_m = 0.0;
     std::size_t viewpoint = 0;
+    std::array<bool, kSectors> covers{};  // The middles of the sectors.
+    // Edges of the field of view in B, and in the scene: origin and edges in O.
+    Eigen::Vector2d left_B = Eigen::Vector2d::UnitX();
+    Eigen::Vector2d right_B = Eigen::Vector2d::UnitX();
+    Eigen::Vector2d origin_O = Eigen::Vector2d::Zero();
+    Eigen::Vector2d left_O = Eigen::Vector2d::UnitX();
+    Eigen::Vector2d right_O = Eigen::Vector2d::UnitX();
+
+    void Place(const Pose<Odometry, Body>& X_OB, const Eigen::Matrix2d& R_OB);
+    /// Whether a disc round origin_O + `d` surely lies outside the field of view.
+    [[nodiscard]] bool IsSurelyOutside(const Eigen::Vector2d& d, double radius_m) const;
     [[nodiscard]] bool Sees(double azimuth_rad) const {
       return azimuth_rad <= fov_left_rad && azimuth_rad >= -fov_right_rad;
     }
@@ -127,12 +148,15 @@ class VisibilityMap {
   using InTheWay = std::array<Silhouette, 12>;  // More boxes in one line hide no more.
 
   void AddSensor(const Sensor& sensor);
-  [[nodiscard]] std::size_t CollectInTheWay(const Occluder& footprint, const Eigen::Vector2d& p_OS,
+  [[nodiscard]] const Sensor& RadarAt(int index) const;
+  [[nodiscard]] const Sensor& CameraAt(int index) const;
+  [[nodiscard]] Answer Ask(const Sensor* first, const Box& footprint) const;
+  [[nodiscard]] std::size_t CollectInTheWay(const Box& footprint, const Eigen::Vector2d& p_OS,
                                             const Fan& fan, InTheWay& in_the_way) const;
   [[nodiscard]] bool HasStaticNearer(const Viewpoint& viewpoint, const Fan& fan,
                                      double limit_cm) const;
   void RebuildBins(Viewpoint& viewpoint) const;
-  [[nodiscard]] SensorView See(const Sensor& sensor, const Occluder& footprint) const;
+  [[nodiscard]] SensorView See(const Sensor& sensor, const Box& footprint) const;
 
   VisibilityConfig config_;
   std::size_t radar_count_ = 0;
@@ -144,7 +168,7 @@ class VisibilityMap {
   EgoState ego_;
   bool has_bins_ = false;
   Timestamp bins_built_{};
-  std::vector<Occluder> occluders_;
+  std::vector<Box> occluders_;
 };
 
 }  // namespace v2vouch
