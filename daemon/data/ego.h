@@ -15,6 +15,7 @@ struct EgoState {
   double accel_mps2 = 0.0;  ///< Along body x.
   double speed_sigma_mps = 0.1;
   double yaw_rate_sigma_radps = 0.002;
+  friend bool operator==(const EgoState&, const EgoState&) = default;
 };
 
 }  // namespace v2vouch

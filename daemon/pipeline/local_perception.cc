@@ -51,17 +51,22 @@ LocalPerception::LocalPerception(const PerceptionConfig& config)
 
 void LocalPerception::OnEgoMotion(const EgoMotion& sample) { odometry_.OnEgoMotion(sample); }
 
-std::optional<Reason> LocalPerception::OnRadarScan(const RadarScan& scan, LocalFrame& frame) {
+std::optional<Reason> LocalPerception::OnRadarScan(const RadarScan& scan,
+                                                   RadarPreparation& prepared, LocalFrame& frame) {
   const auto ego = odometry_.StateAt(scan.stamp);
   if (!ego) return Reason::kNoEgoMotion;
   const auto radar = static_cast<std::size_t>(scan.radar);
-  radar_preprocessor_.Process(scan, vehicle_.radars[radar], *ego, radar_measurements_);
+  if (!prepared.is_ready || prepared.ego != *ego) {
+    radar_preprocessor_.Process(scan, vehicle_.radars[radar], *ego, prepared.measurements);
+    prepared.ego = *ego;
+    prepared.is_ready = true;
+  }
   tracker_.Predict(scan.stamp);
   Look(*ego);
-  tracker_.UpdateRadar(scan.radar, *ego, radar_measurements_, [&](const LocalTrack& track) {
+  tracker_.UpdateRadar(scan.radar, *ego, prepared.measurements, [&](const LocalTrack& track) {
     return DetectabilityOf(Kind::kRadar, scan.radar, *ego, track);
   });
-  visibility_.AccumulateStatic(scan.stamp, *ego, radar_measurements_);
+  visibility_.AccumulateStatic(scan.stamp, *ego, prepared.measurements);
   last_radar_[radar] = scan.stamp;
   Finish(*ego, frame);
   return std::nullopt;
@@ -97,8 +102,11 @@ void LocalPerception::Look(const EgoState& ego) {
 Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoState& ego,
                                                const LocalTrack& track) const {
   const Occluder footprint = FootprintOf(track);
+  const bool is_radar = kind == Kind::kRadar;
+  const VisibilityMap::Answer answer =
+      is_radar ? visibility_.AskRadar(sensor, footprint) : visibility_.AskCamera(sensor, footprint);
   Detectability result;
-  switch (visibility_.Overall(footprint)) {
+  switch (answer.overall) {
     case View::kClear:
     case View::kUnknown:
       result.visibility = Visibility::kVisible;
@@ -111,9 +119,7 @@ Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoS
       break;
   }
 
-  const bool is_radar = kind == Kind::kRadar;
-  const SensorView seen = is_radar ? visibility_.FromRadar(sensor, footprint)
-                                   : visibility_.FromCamera(sensor, footprint);
+  const SensorView seen = answer.sensor;
   result.visible_share = seen.uncovered;
   result.left_is_covered = seen.left_is_covered;
   result.right_is_covered = seen.right_is_covered;

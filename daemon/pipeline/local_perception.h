@@ -14,6 +14,14 @@
 
 namespace v2vouch {
 
+/// What preprocessing made of a scan, kept beside it: a re-run whose ego motion is the same takes
+/// it as it is.
+struct RadarPreparation {
+  bool is_ready = false;
+  EgoState ego;
+  std::vector<RadarMeasurement> measurements;
+};
+
 /// LOCAL: what radar, camera and the ego's own motion say, and nothing else. No GNSS and no V2V
 /// type appears in this interface, which is why no such message can change a bit of the list.
 /// Inputs must come in order of time; the timeline restores copies when one is late.
@@ -25,7 +33,8 @@ class LocalPerception {
 
   /// One frame: preprocess, predict, look, associate, update. `frame` is reused.
   /// @return why the frame could not be used (then `frame` is untouched), or nullopt.
-  std::optional<Reason> OnRadarScan(const RadarScan& scan, LocalFrame& frame);
+  std::optional<Reason> OnRadarScan(const RadarScan& scan, RadarPreparation& prepared,
+                                    LocalFrame& frame);
   std::optional<Reason> OnCameraDetections(const CameraDetections& detections, LocalFrame& frame);
 
   [[nodiscard]] const EgoOdometry& odometry() const { return odometry_; }
@@ -54,7 +63,6 @@ class LocalPerception {
   Timestamp newest_{};
   std::vector<Timestamp> last_radar_, last_camera_;
   // Scratch, meaningless between frames.
-  std::vector<RadarMeasurement> radar_measurements_;
   std::vector<CameraMeasurement> camera_measurements_;
   std::vector<Occluder> occluders_;
   std::vector<char> radar_alive_, camera_alive_;

@@ -32,6 +32,9 @@ std::uint64_t Hash(std::string_view text, std::uint64_t seed) {  // FNV-1a.
   return hash;
 }
 
+// Events without a checkpoint in a row, at most: where no frames come the ego's motion gets some.
+constexpr std::size_t kLongestRun = 64;
+
 bool InsertOnce(std::vector<std::uint64_t>& set, std::uint64_t value) {
   if (std::find(set.begin(), set.end(), value) != set.end()) return false;
   set.push_back(value);
@@ -63,7 +66,8 @@ EventKey KeyOf(const TimelineInput& input) {
 Timeline::Timeline(const PerceptionConfig& config)
     : config_(config),
       local_(config),
-      priority_(config.priority, config.alignment, config.vehicle) {}
+      priority_(config.priority, config.alignment, config.vehicle),
+      before_(std::make_unique<Checkpoint>(Checkpoint{local_, priority_})) {}
 
 std::unique_ptr<Timeline::Event> Timeline::NewEvent(TimelineInput input) {
   std::unique_ptr<Event> event;
@@ -73,16 +77,22 @@ std::unique_ptr<Timeline::Event> Timeline::NewEvent(TimelineInput input) {
     event = std::move(spare_events_.back());
     spare_events_.pop_back();
     event->has_frame = false;
+    event->radar.is_ready = false;
     event->emitted.clear();
     event->residuals.clear();
   }
   event->key = KeyOf(input);
   event->input = std::move(input);
-  // Frames are the natural places to go back to: few, and the dear ones to re-run.
-  if (HasFrame(event->input) || events_.empty()) {
-    event->checkpoint = NewCheckpoint();
-  }
+  if (NeedsCheckpoint(event->input)) event->after = NewCheckpoint();
   return event;
+}
+
+// Frames are the natural places to go back to: few, and the dear ones to re-run.
+bool Timeline::NeedsCheckpoint(const TimelineInput& input) const {
+  if (HasFrame(input)) return true;
+  if (!std::holds_alternative<EgoMotion>(input) || events_.size() < kLongestRun) return false;
+  return std::none_of(events_.end() - kLongestRun, events_.end(),
+                      [](const auto& event) { return event->after != nullptr; });
 }
 
 std::unique_ptr<Timeline::Checkpoint> Timeline::NewCheckpoint() {
@@ -126,31 +136,28 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Outputs& outputs) {
   const auto before = std::find_if(events_.rbegin(), events_.rend(),
                                    [&](const auto& event) { return event->key <= key; });
   const auto place = static_cast<std::size_t>(events_.rend() - before);
-  auto event = NewEvent(std::move(input));
-  if (place == 0 && !events_.empty()) {
-    // Older than all that is kept: what the oldest started from is what this one starts from.
-    if (!event->checkpoint) event->checkpoint = NewCheckpoint();
-    *event->checkpoint = *events_.front()->checkpoint;
-  }
-  events_.insert(events_.begin() + static_cast<std::ptrdiff_t>(place), std::move(event));
+  if (place < settled_events_) ++settled_events_;
+  events_.insert(events_.begin() + static_cast<std::ptrdiff_t>(place), NewEvent(std::move(input)));
 
   const auto later = events_.begin() + static_cast<std::ptrdiff_t>(place) + 1;
   const bool is_last = later == events_.end();
   const bool is_last_of_local =
       std::none_of(later, events_.end(), [](const auto& other) { return IsLocal(other->input); });
   std::size_t from = place;
-  while (!is_last && from > 0 && (from == place || !events_[from]->checkpoint)) --from;
+  while (!is_last && from > 0 && !events_[from - 1]->after) --from;
+  const Checkpoint& start =
+      from > 0 && events_[from - 1]->after ? *events_[from - 1]->after : *before_;
 
   // A claim or a fix cannot change LOCAL, so LOCAL is not even asked.
   if (is_local) {
     if (is_last_of_local) {
       RunLocal(place, outputs);
     } else {
-      local_ = events_[from]->checkpoint->local;
+      local_ = start.local;
       RunLocal(from, outputs);
     }
   }
-  if (!is_last) priority_ = events_[from]->checkpoint->priority;
+  if (!is_last) priority_ = start.priority;
   RunPriority(from, outputs);
 
   const bool is_correction =
@@ -161,33 +168,25 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Outputs& outputs) {
   return {.is_taken = true, .is_correction = is_correction};
 }
 
-// The map that belongs to a frame is the one LOCAL had when the next frame began: only frames
-// change it, and every frame has a checkpoint.
-const VisibilityMap& Timeline::VisibilityAfter(std::size_t index) const {
-  for (std::size_t i = index + 1; i < events_.size(); ++i) {
-    if (events_[i]->checkpoint) return events_[i]->checkpoint->local.visibility();
-  }
-  return local_.visibility();
-}
-
 void Timeline::RunLocal(std::size_t from, Outputs& outputs) {
   for (std::size_t i = from; i < events_.size(); ++i) {
     Event& event = *events_[i];
-    if (event.checkpoint) event.checkpoint->local = local_;
     step_.Clear();
     const auto keep = [&](std::optional<Reason> refusal) {
       event.has_frame = !refusal;
       if (refusal) return step_.Refuse(*refusal, event.key.time);
       for (const Reason failure : local_.failures()) step_.Refuse(failure, event.key.time);
     };
-    std::visit(
-        Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
-                   [&](const RadarScan& scan) { keep(local_.OnRadarScan(scan, event.frame)); },
-                   [&](const CameraDetections& boxes) {
-                     keep(local_.OnCameraDetections(boxes, event.frame));
-                   },
-                   [](const GnssFix&) {}, [](const TimedClaim&) {}},
-        event.input);
+    std::visit(Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
+                          [&](const RadarScan& scan) {
+                            keep(local_.OnRadarScan(scan, event.radar, event.frame));
+                          },
+                          [&](const CameraDetections& boxes) {
+                            keep(local_.OnCameraDetections(boxes, event.frame));
+                          },
+                          [](const GnssFix&) {}, [](const TimedClaim&) {}},
+               event.input);
+    if (event.after) event.after->local = local_;
     EmitOnce(event, step_, outputs);
   }
 }
@@ -195,7 +194,6 @@ void Timeline::RunLocal(std::size_t from, Outputs& outputs) {
 void Timeline::RunPriority(std::size_t from, Outputs& outputs) {
   for (std::size_t i = from; i < events_.size(); ++i) {
     Event& event = *events_[i];
-    if (event.checkpoint) event.checkpoint->priority = priority_;
     step_.Clear();
     // The pose at an instant uses samples up to that instant only, so asking the newest odometry
     // gives what a run in order would have given.
@@ -215,11 +213,12 @@ void Timeline::RunPriority(std::size_t from, Outputs& outputs) {
                           },
                           [&](const auto&) {
                             if (!event.has_frame) return;
-                            priority_.OnFrame(event.frame, VisibilityAfter(i), step_);
+                            priority_.OnFrame(event.frame, event.after->local.visibility(), step_);
                             newest_ = std::max(newest_, event.key.time);
                           }},
                event.input);
     event.residuals = priority_.TakeResiduals();
+    if (event.after) event.after->priority = priority_;
     EmitOnce(event, step_, outputs);
   }
 }
@@ -240,19 +239,24 @@ void Timeline::Trim() {
   const Timestamp oldest =
       newest_local_.value_or(Timestamp{}) - FromSeconds(config_.timeline.replay_buffer_s);
   for (;;) {
-    // Drop up to the next checkpoint, as long as that one still lies before the buffer.
-    std::size_t next = 1;
-    while (next < events_.size() && !events_[next]->checkpoint) ++next;
-    if (next >= events_.size() || events_[next]->key.time > oldest) return;
-    for (std::size_t i = 0; i < next; ++i) {
-      std::unique_ptr<Event> event = std::move(events_.front());
-      events_.pop_front();
-      settled_ = event->key.time;
-      settled_residuals_.insert(settled_residuals_.end(), event->residuals.begin(),
-                                event->residuals.end());
-      if (event->checkpoint) spare_checkpoints_.push_back(std::move(event->checkpoint));
-      spare_events_.push_back(std::move(event));
+    // Settled is all before a checkpointed event that itself lies before the buffer.
+    std::size_t next = settled_events_ + 1;
+    while (next < events_.size() && !events_[next]->after) ++next;
+    if (next >= events_.size() || events_[next]->key.time > oldest) break;
+    for (; settled_events_ < next; ++settled_events_) {
+      const Event& event = *events_[settled_events_];
+      settled_ = event.key.time;
+      settled_residuals_.insert(settled_residuals_.end(), event.residuals.begin(),
+                                event.residuals.end());
     }
+  }
+  std::size_t dropped = settled_events_;
+  while (dropped > 0 && !events_[dropped - 1]->after) --dropped;
+  for (; dropped > 0; --dropped, --settled_events_) {
+    std::unique_ptr<Event> event = std::move(events_.front());
+    events_.pop_front();
+    if (event->after) spare_checkpoints_.push_back(std::exchange(before_, std::move(event->after)));
+    spare_events_.push_back(std::move(event));
   }
 }
 

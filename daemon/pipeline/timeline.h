@@ -40,9 +40,10 @@ using TimelineInput = std::variant<EgoMotion, GnssFix, RadarScan, CameraDetectio
 EventKey KeyOf(const TimelineInput& input);
 
 /// Puts every event in its place. An event later than all before it is stepped at once; an earlier
-/// one restores the nearest checkpoint and re-runs what came since: LOCAL and then the V2V side
-/// when it is an own sensor's, the V2V side alone when it is a GNSS fix or a claim. Any order of
-/// arrival within the replay buffer ends in the same state, bit for bit.
+/// one restores the state after the last frame before its place and re-runs what came since, not
+/// one frame more: LOCAL and then the V2V side when it is an own sensor's, the V2V side alone when
+/// it is a GNSS fix or a claim. Any order of arrival within the replay buffer ends in the same
+/// state, bit for bit.
 class Timeline {
  public:
   explicit Timeline(const PerceptionConfig& config);
@@ -78,15 +79,16 @@ class Timeline {
     TimelineInput input;
     bool has_frame = false;
     LocalFrame frame;
-    std::unique_ptr<Checkpoint> checkpoint;  // The state before this event.
-    std::vector<std::uint64_t> emitted;      // What has left already, by hash.
+    RadarPreparation radar;
+    std::unique_ptr<Checkpoint> after;   // The state after this event.
+    std::vector<std::uint64_t> emitted;  // What has left already, by hash.
     std::vector<BiasResidual> residuals;
   };
 
   std::unique_ptr<Event> NewEvent(TimelineInput input);
   std::unique_ptr<Checkpoint> NewCheckpoint();
   [[nodiscard]] std::optional<Reason> WhyNot(const TimelineInput& input) const;
-  [[nodiscard]] const VisibilityMap& VisibilityAfter(std::size_t index) const;
+  [[nodiscard]] bool NeedsCheckpoint(const TimelineInput& input) const;
   void RunLocal(std::size_t from, Outputs& outputs);
   void RunPriority(std::size_t from, Outputs& outputs);
   void EmitOnce(Event& event, const Outputs& step, Outputs& outputs) const;
@@ -95,7 +97,9 @@ class Timeline {
   PerceptionConfig config_;
   LocalPerception local_;
   PriorityPerception priority_;
-  std::deque<std::unique_ptr<Event>> events_;  // Ordered by key; the first has a checkpoint.
+  std::deque<std::unique_ptr<Event>> events_;  // Ordered by key.
+  std::size_t settled_events_ = 0;             // The first of them; kept for the next checkpoint.
+  std::unique_ptr<Checkpoint> before_;         // The state before the first event.
   std::vector<std::unique_ptr<Event>> spare_events_;
   std::vector<std::unique_ptr<Checkpoint>> spare_checkpoints_;
   std::vector<BiasResidual> settled_residuals_;
