@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "daemon/pipeline/perception.h"
+#include "daemon/pipeline/timeline.h"
+#include "tests/support/synthetic_drive.h"
+
+namespace v2vouch {
+namespace {
+
+using testing::DriveStart;
+using testing::MakeInputs;
+using testing::SyntheticCar;
+using testing::SyntheticDrive;
+
+// Five lanes of cars ahead and behind that keep pace with the ego; every third one speaks.
+SyntheticDrive DenseTraffic(int cars, double duration_s) {
+  SyntheticDrive drive;
+  drive.duration_s = duration_s;
+  for (int i = 0; i < cars; ++i) {
+    const int lane = i % 5;
+    const int row = i / 5;
+    drive.cars.push_back({.x_m = 14.0 + 13.0 * (row % 2 == 0 ? row / 2 : -(row / 2) - 3),
+                          .y_m = 3.5 * (lane - 2),
+                          .speed_mps = 8.0 + 0.3 * (lane - 2),
+                          .sender = i % 3 == 0 ? static_cast<SenderId>(100 + i) : 0});
+  }
+  return drive;
+}
+
+void Run(const std::vector<Input>& inputs) {
+  Perception perception(PerceptionConfig{}, std::make_unique<NullBiasEstimator>());
+  Outputs outputs;
+  for (const Input& input : inputs) {
+    perception.Step(input, outputs);
+    benchmark::DoNotOptimize(outputs.local.tracks.data());
+  }
+}
+
+// Four seconds of driving among ten cars, every input on time. Can afford 13 ms, which is 300 x
+// real time (DESIGN, offline replay).
+void BM_DriveOnTime(benchmark::State& state) {
+  const std::vector<Input> inputs = MakeInputs(DenseTraffic(10, 4.0));
+  for (auto _ : state) Run(inputs);
+  state.counters["x_realtime"] =
+      benchmark::Counter(4.0, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(BM_DriveOnTime)->Unit(benchmark::kMillisecond);
+
+// The same with every picture 0.1 s late, as behind a neural network: each one has some ten frames
+// of radar re-run. Can afford three times as much, 40 ms.
+void BM_DriveWithLatePictures(benchmark::State& state) {
+  std::vector<Input> inputs = MakeInputs(DenseTraffic(10, 4.0));
+  const auto arrival = [](const Input& input) {
+    const bool is_late = std::holds_alternative<CameraDetections>(input);
+    return HeaderOf(input).stamp + FromSeconds(is_late ? 0.1 : 0.0);
+  };
+  std::stable_sort(inputs.begin(), inputs.end(),
+                   [&](const Input& a, const Input& b) { return arrival(a) < arrival(b); });
+  for (auto _ : state) Run(inputs);
+  state.counters["x_realtime"] =
+      benchmark::Counter(4.0, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(BM_DriveWithLatePictures)->Unit(benchmark::kMillisecond);
+
+// LOCAL after two seconds of a drive, and the inputs of the half second that follows.
+struct Warm {
+  explicit Warm(int cars) : local(PerceptionConfig{}) {
+    for (const Input& input : MakeInputs(DenseTraffic(cars, 2.5))) {
+      if (HeaderOf(input).stamp < DriveStart() + FromSeconds(2.0)) {
+        Step(local, input);
+      } else {
+        rest.push_back(input);
+      }
+    }
+  }
+
+  int Step(LocalPerception& perception, const Input& input) {
+    RadarPreparation prepared;
+    if (const auto* motion = std::get_if<EgoMotion>(&input)) {
+      perception.OnEgoMotion(*motion);
+    } else if (const auto* scan = std::get_if<RadarScan>(&input)) {
+      return perception.OnRadarScan(*scan, prepared, frame) ? 0 : 1;
+    } else if (const auto* boxes = std::get_if<CameraDetections>(&input)) {
+      return perception.OnCameraDetections(*boxes, frame) ? 0 : 1;
+    }
+    return 0;
+  }
+
+  LocalPerception local;
+  LocalFrame frame;
+  std::vector<Input> rest;
+};
+
+// One frame of LOCAL, odometry included. Can afford 100 us among 10 cars, 500 us among 50 (DESIGN).
+void BM_LocalFrame(benchmark::State& state) {
+  Warm warm(static_cast<int>(state.range(0)));
+  int frames = 0;
+  LocalPerception local = warm.local;
+  std::size_t next = 0;
+  for (auto _ : state) {
+    for (bool is_frame = false; !is_frame; ++next) {
+      if (next == warm.rest.size()) {
+        local = warm.local;
+        next = 0;
+      }
+      is_frame = warm.Step(local, warm.rest[next]) > 0;
+    }
+    ++frames;
+  }
+  state.counters["tracks"] = static_cast<double>(warm.frame.tracks.size());
+  state.SetItemsProcessed(frames);
+}
+BENCHMARK(BM_LocalFrame)->Arg(10)->Arg(50)->Unit(benchmark::kMicrosecond);
+
+// LOCAL's part of a checkpoint. A whole one can afford 20 us with 50 tracks (DESIGN).
+void BM_LocalCheckpoint(benchmark::State& state) {
+  const Warm warm(static_cast<int>(state.range(0)));
+  LocalPerception copy = warm.local;
+  for (auto _ : state) {
+    copy = warm.local;
+    benchmark::DoNotOptimize(copy);
+  }
+}
+BENCHMARK(BM_LocalCheckpoint)->Arg(10)->Arg(50)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace v2vouch
