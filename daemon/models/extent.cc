@@ -79,13 +79,14 @@ void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise
   state.covariance(ExtendedState::kWidth, ExtendedState::kWidth) += 0.1 * kSizePsd * dt_s;
 }
 
-bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool learns_size) {
+bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool learns_size,
+                    unsigned frozen) {
   Eigen::Matrix<double, Eigen::Dynamic, ExtendedState::kSize, 0, Linearized::kMaxRows,
                 ExtendedState::kSize>
       H(measurement.y.size(), ExtendedState::kSize);
   H << measurement.H, measurement.E;
   if (!JosephUpdate<ExtendedState::kSize>(measurement.y, H, measurement.R, state.mean,
-                                          state.covariance, learns_size ? 0 : 2)) {
+                                          state.covariance, learns_size ? 0 : 2, frozen)) {
     return false;
   }
   Clamp(state);
@@ -135,6 +136,20 @@ void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state) {
   state.covariance.topRightCorner<kStateSize, 2>() = cross;
   state.covariance.bottomLeftCorner<2, kStateSize>() = cross.transpose();
   state.covariance.bottomRightCorner<2, 2>() = size_covariance;
+  Clamp(state);
+}
+
+void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O,
+              ExtendedState& state) {
+  const double growth = length_m - state.mean[ExtendedState::kLength];
+  if (!(growth > 0.0)) return;
+  const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
+  const double away = forward.dot(state.mean.head<2>() - seen_from_O) >= 0.0 ? 1.0 : -1.0;
+  Vector direction = Vector::Zero();  // d(state)/d(length) with the near face fixed.
+  direction.head<2>() = 0.5 * away * forward;
+  direction[ExtendedState::kLength] = 1.0;
+  state.mean += growth * direction;
+  state.covariance += sigma_m * sigma_m * direction * direction.transpose();
   Clamp(state);
 }
 

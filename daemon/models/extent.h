@@ -42,8 +42,10 @@ void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise
 /// @param learns_size false: the size is only considered. A radar's mean reflection depends on the
 ///   length through which faces are seen; small errors of that model, the same in every scan, would
 ///   pass for knowledge of the length.
+/// @param frozen bit i set: state i is only considered too.
 /// @return false on numerical failure; state untouched.
-bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool learns_size = true);
+bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool learns_size = true,
+                    unsigned frozen = 0);
 std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
                                            const ExtendedState& state);
 
@@ -51,6 +53,11 @@ std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
 /// (information filter), puts that of `to` in, and moves the vehicle as the joint covariance says:
 /// the face that was measured stays where it is.
 void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state);
+
+/// Makes the vehicle at least `length_m` long, which is uncertain by `sigma_m`: it grows away from
+/// `seen_from_O`, the face that was measured stays where it is. Shorter ones leave it alone.
+void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O,
+              ExtendedState& state);
 
 /// What the spread of one cluster says about the size, for a vehicle of known motion: returns of
 /// one vehicle span no more than its box does,

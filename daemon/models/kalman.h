@@ -17,11 +17,12 @@ namespace v2vouch {
 /// @param considered this many states at the end keep their mean (Schmidt: their uncertainty
 /// counts, but
 ///   the measurement may not teach them).
+/// @param frozen bit i set: so is state i.
 /// @return false when S is not positive definite or the result is not finite; nothing is changed.
 template <int N, class Vector, class Jacobian, class Covariance>
 bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
                   Eigen::Matrix<double, N, 1>& mean, Eigen::Matrix<double, N, N>& P,
-                  int considered = 0) {
+                  int considered = 0, unsigned frozen = 0) {
   using Gain = Eigen::Matrix<double, N, Eigen::Dynamic, 0, N, Linearized::kMaxRows>;
   const Gain PHt = P * H.transpose();
   Linearized::Covariance S = H * PHt + R;
@@ -30,6 +31,9 @@ bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
   if (llt.info() != Eigen::Success) return false;
   Gain K = llt.solve(PHt.transpose()).transpose();
   K.bottomRows(considered).setZero();
+  for (int i = 0; i < N; ++i) {
+    if ((frozen >> i & 1U) != 0) K.row(i).setZero();
+  }
   const Eigen::Matrix<double, N, 1> next = mean + K * y;
   Eigen::Matrix<double, N, N> A = Eigen::Matrix<double, N, N>::Identity();
   A.noalias() -= K * H;

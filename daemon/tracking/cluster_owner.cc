@@ -22,6 +22,20 @@ constexpr double kPointRadius_m = 2.5;
 constexpr double kRangeRateSlack_mps = 1.5;
 // Tracks that are hardly believed own what lies near them only while they are being hit.
 constexpr double kOwnerExistence = 0.5;
+// A lorry or bus whose length is not known yet may reach this many sigmas farther.
+constexpr double kLongReachSigmas = 2.0;
+constexpr double kLongestVehicle_m = 18.75;
+
+// How far from its centre a vehicle may reflect along its axis.
+double ReachAlong(const LocalTrack& track) {
+  const Extent& extent = track.extent;
+  const bool is_long =
+      track.object_class == ObjectClass::kTruck || track.object_class == ObjectClass::kBus;
+  if (!is_long) return 0.5 * extent.length_m + extent.length_sigma_m + kEndMargin_m;
+  return std::min(0.5 * extent.length_m + kLongReachSigmas * extent.length_sigma_m,
+                  kLongestVehicle_m - 0.5 * extent.length_m) +
+         kEndMargin_m;
+}
 
 }  // namespace
 
@@ -59,7 +73,7 @@ bool Tracker::Owns(std::size_t track, const RadarLook& look, const RadarMeasurem
   if (filter.is_vehicle()) {
     const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-x[kYaw]) * from_point;
     const Extent& extent = tracks_[track].extent;
-    const double reach = 0.5 * extent.length_m + extent.length_sigma_m + kEndMargin_m + blur_m;
+    const double reach = ReachAlong(tracks_[track]) + blur_m;
     if (std::abs(inside.x()) > reach ||
         std::abs(inside.y()) > 0.5 * extent.width_m + kBoxMargin_m + blur_m) {
       return false;
@@ -83,8 +97,8 @@ void Tracker::AbsorbClusters(const RadarLook& look,
   }
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (assigned_[i] < 0 && tracks_[i].existence < kOwnerExistence) continue;
-    const double reach_m = 0.5 * tracks_[i].extent.length_m + tracks_[i].extent.length_sigma_m +
-                           tracks_[i].extent.width_m + kPointRadius_m + kMaxBlur_m;
+    const double reach_m =
+        ReachAlong(tracks_[i]) + tracks_[i].extent.width_m + kPointRadius_m + kMaxBlur_m;
     candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m, [&](std::size_t j) {
       if (owner_[j] >= 0 || measurements[j].is_static) return;
       if (Owns(i, look, measurements[j], candidates_[j].p_O)) owner_[j] = static_cast<int>(i);

@@ -41,6 +41,9 @@ constexpr double kSpanGate = 9.0;
 // Clusters of a vehicle of which less is visible do not measure its size: what covers it may have
 // given them a reflection.
 constexpr double kSpanShare = 0.9;
+// Seen at a smaller angle than this (its sine), a vehicle's length hides behind its near face:
+// what a camera seems to say about it is its own lasting error.
+constexpr double kLengthShows = 0.3;
 // Of the unseen part of a point target: see LinearizeRadar.
 constexpr double kUnseenLooks = 8.0;
 
@@ -151,6 +154,13 @@ std::optional<Linearized> LinearizeVehicle(const ExtendedState& state, const Ext
 
 template <class Measurement>
 constexpr bool kLearnsSize = std::is_same_v<Measurement, CameraMeasurement>;
+
+// States that a look may not teach, as bits.
+unsigned Frozen(const ExtendedState& state, const Eigen::Vector2d& seen_from_O) {
+  const Eigen::Vector2d line = (state.mean.head<2>() - seen_from_O).normalized();
+  const double aspect = std::atan2(line.y(), line.x()) - state.mean[kYaw];
+  return std::abs(std::sin(aspect)) < kLengthShows ? 1U << ExtendedState::kLength : 0U;
+}
 
 Extent AssumedExtent(const ExtendedState& state, const FilterSettings& settings) {
   return settings.point_targets ? Extent{0.0, 0.0, 0.0, 0.0} : state.assumed_extent();
@@ -287,7 +297,8 @@ bool TrackFilter::UpdateVehicle(const Look& look, const Measurement& z,
   auto model = LinearizeVehicle(vehicle_, AssumedExtent(vehicle_, settings), look, z);
   if (!model) return false;
   ExtendedState next = vehicle_;
-  if (!UpdateExtended(*model, next, kLearnsSize<Measurement>)) return false;
+  const unsigned frozen = Frozen(vehicle_, seen_from_);
+  if (!UpdateExtended(*model, next, kLearnsSize<Measurement>, frozen)) return false;
   if (age_s_ < kYoung_s) {
     // Iterated EKF, one more round: linearise where the first update went, then apply the result to
     // the prediction.
@@ -297,7 +308,7 @@ bool TrackFilter::UpdateVehicle(const Look& look, const Measurement& z,
       back[kYaw] = WrapAngle(back[kYaw]);
       again->y -= again->H * back.head<kStateSize>() + again->E * back.tail<2>();
       ExtendedState iterated = vehicle_;
-      if (UpdateExtended(*again, iterated, kLearnsSize<Measurement>)) next = iterated;
+      if (UpdateExtended(*again, iterated, kLearnsSize<Measurement>, frozen)) next = iterated;
     }
   }
   vehicle_ = next;
@@ -313,7 +324,17 @@ bool TrackFilter::Update(const RadarLook& look, const RadarMeasurement& z,
     const auto span = LinearizeSpan(vehicle_, look.ego, look.radar, z);
     if (!span) return true;
     const auto likelihood = EvaluateExtended(*span, vehicle_);
-    if (likelihood && likelihood->distance_squared < kSpanGate) UpdateExtended(*span, vehicle_);
+    if (likelihood && likelihood->distance_squared < kSpanGate) {
+      ExtendedState grown = vehicle_;
+      if (UpdateExtended(*span, grown)) {
+        // A span bounds the length from below. Lorries show their far end last, so that it must not
+        // make their length certain.
+        const bool is_long =
+            object_class_ == ObjectClass::kTruck || object_class_ == ObjectClass::kBus;
+        if (is_long) grown.covariance = vehicle_.covariance;
+        vehicle_ = grown;
+      }
+    }
     return true;
   }
   const auto model = LinearizePoint(point_, look, z, settings.point_targets);
@@ -336,9 +357,20 @@ bool TrackFilter::Update(const CameraLook& look, const CameraMeasurement& z,
   return true;
 }
 
+void TrackFilter::Lengthen(double length_m, double sigma_m) {
+  if (is_vehicle_) v2vouch::Lengthen(length_m, sigma_m, seen_from_, vehicle_);
+}
+
 void TrackFilter::SetClass(ObjectClass object_class) {
   if (object_class == object_class_) return;
-  if (is_vehicle_) AssumeClass(object_class_, object_class, vehicle_);
+  if (is_vehicle_) {
+    AssumeClass(object_class_, object_class, vehicle_);
+    // Spans of a part made many a lorry a five-metre van: they bound its length from below only.
+    const Extent size = ClassExtent(object_class);
+    if (object_class == ObjectClass::kTruck || object_class == ObjectClass::kBus) {
+      Lengthen(size.length_m, size.length_sigma_m);
+    }
+  }
   object_class_ = object_class;
 }
 

@@ -73,11 +73,16 @@ class TrackFilter {
   /// Takes the class's typical size for what nobody measured yet.
   void SetClass(ObjectClass object_class);
 
+  /// A part of it was found this far behind its near face (Lengthen of models/extent.h); a point
+  /// has no length yet.
+  void Lengthen(double length_m, double sigma_m);
+
   /// State and size as the rest of the program sees them. A point's centre lies behind it by what
   /// its likely direction says; without one, it is taken to stand as the ego does.
   void Show(const FilterSettings& settings, LocalTrack& track) const;
 
   [[nodiscard]] bool is_vehicle() const { return is_vehicle_; }
+  [[nodiscard]] Eigen::Vector2d seen_from_O() const { return seen_from_; }
   [[nodiscard]] Eigen::Vector2d position_O() const;
   [[nodiscard]] Eigen::Vector2d velocity_O() const;
   [[nodiscard]] Eigen::Matrix2d position_covariance() const;

@@ -41,6 +41,12 @@ constexpr double kTentativeHold_s = 0.1;
 constexpr double kInside_m = 0.5;
 constexpr double kMaxEndDoubt_m = 1.5;
 constexpr double kCoastingSince_s = 0.5;
+// Articulated lorries with some tolerance: 16.5 m and 18.75 m are the limits of 96/53/EC.
+constexpr double kLongestVehicle_m = 18.75;
+constexpr double kPartAside_m = 1.5;
+constexpr double kPartSpeed_mps = 2.0;
+constexpr double kPartHold_s = 0.5;
+constexpr double kPartSigma_m = 1.5;
 
 double LargestSigma(const Eigen::Matrix2d& P) {
   const double mean = 0.5 * (P(0, 0) + P(1, 1));
@@ -430,6 +436,7 @@ void Tracker::Conclude(double dt_s) {
     }
   }
   DropDuplicates(dt_s);
+  JoinParts(dt_s);
   RemoveDead();
   // Births come in order of their index; only two sensors with one stamp can need more than this.
   for (std::size_t i = 1; i < tracks_.size(); ++i) {
@@ -498,6 +505,52 @@ void Tracker::DropDuplicates(double dt_s) {
     hidden_[i].overlap_s = overlaps ? hidden_[i].overlap_s + dt_s : 0.0;
     const double hold_s = tracks_[i].is_confirmed ? kDuplicateHold_s : kTentativeHold_s;
     if (overlaps && hidden_[i].overlap_s > hold_s) hidden_[i].is_dead = true;
+  }
+}
+
+// A lorry's rear axle reflects ten metres behind its face and starts a track of its own. It moves
+// with the lorry, on its axis, and no picture shows it beside it.
+void Tracker::JoinParts(double dt_s) {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (hidden_[i].is_dead) continue;
+    const LocalTrack& part = tracks_[i];
+    std::size_t whole = tracks_.size();
+    double needed_m = 0.0;
+    for (std::size_t j = 0; j < tracks_.size(); ++j) {
+      const LocalTrack& lorry = tracks_[j];
+      if (i == j || hidden_[j].is_dead || !hidden_[j].filter.is_vehicle()) continue;
+      if (lorry.object_class != ObjectClass::kTruck && lorry.object_class != ObjectClass::kBus) {
+        continue;
+      }
+      if (!lorry.is_confirmed || !IsSenior(lorry, part)) continue;
+      if (part.last_camera && part.last_camera == lorry.last_camera) continue;
+      const Eigen::Rotation2D<double> into(-lorry.state_O.mean[kYaw]);
+      const Eigen::Vector2d between =
+          into * (part.state_O.mean.head<2>() - lorry.state_O.mean.head<2>());
+      if (std::abs(between.y()) > kPartAside_m) continue;
+      const Eigen::Vector2d sensor =
+          into * (hidden_[j].filter.seen_from_O() - lorry.state_O.mean.head<2>());
+      const double behind_m = sensor.x() > 0.0 ? -between.x() : between.x();
+      const double reach_m =
+          std::min(kLongestVehicle_m, lorry.extent.length_m + 2.0 * lorry.extent.length_sigma_m);
+      const double from_face_m = 0.5 * lorry.extent.length_m + behind_m;
+      if (from_face_m < -kInside_m || from_face_m > reach_m) continue;
+      const double speed = (hidden_[i].filter.velocity_O() - hidden_[j].filter.velocity_O()).norm();
+      const double doubt = hidden_[i].filter.is_vehicle() ? 0.0 : 8.0;
+      if (speed > kPartSpeed_mps + doubt) continue;
+      whole = j;
+      needed_m = from_face_m;
+      break;
+    }
+    if (whole == tracks_.size()) {
+      hidden_[i].part_s = 0.0;
+      continue;
+    }
+    hidden_[i].part_s += dt_s;
+    if (hidden_[i].part_s < (part.is_confirmed ? kPartHold_s : kTentativeHold_s)) continue;
+    hidden_[i].is_dead = true;
+    hidden_[whole].filter.Lengthen(needed_m, kPartSigma_m);
+    hidden_[whole].filter.Show(settings_, tracks_[whole]);
   }
 }
 

@@ -76,7 +76,10 @@ using DetectabilityOf = std::function<Detectability(const LocalTrack&)>;
 /// - A further cluster inside a tracked vehicle's footprint with its Doppler belongs to that
 /// vehicle:
 ///   it joins the measurement and starts nothing.
-/// - Two tracks on one footprint with one velocity are one vehicle: the younger goes.
+/// - Two tracks on one footprint with one velocity are one vehicle: the younger goes. So does one
+/// on
+///   the axis behind a lorry's or bus's near face, as far as such a vehicle may reach, unless one
+///   picture has shown both: the other is lengthened.
 class Tracker {
  public:
   Tracker(const TrackerConfig& config, const VehicleConfig& vehicle);
@@ -111,6 +114,7 @@ class Tracker {
     Timestamp last_hit{};
     int moving_hits = 0;     // Radar clusters with a Doppler of their own.
     double overlap_s = 0.0;  // How long an older track has been in the same place.
+    double part_s = 0.0;     // How long it could be the far end of a lorry or bus.
     std::array<double, 8> class_votes{};
     bool is_dead = false;
   };
@@ -131,6 +135,7 @@ class Tracker {
   void Vote(std::size_t track, const CameraMeasurement& z);
   void Start(const TrackFilter& filter, int sensor, std::size_t index, double existence);
   void DropDuplicates(double dt_s);
+  void JoinParts(double dt_s);
   void Conclude(double dt_s);
   void RemoveDead();
 

@@ -89,6 +89,20 @@ TEST(LinearizeSpan, SaysNothingForOneReturnOrObjects) {
   EXPECT_FALSE(LinearizeSpan(state, EgoState{}, RadarConfig{}, z));
 }
 
+// The face that was measured stays; what was too short before grows away from the sensor.
+TEST(Lengthen, GrowsAwayFromTheSensor) {
+  ExtendedState lorry = LeadCar(ObjectClass::kTruck);
+  const ExtendedState before = lorry;
+  Lengthen(before.mean[ExtendedState::kLength] - 1.0, 1.0, Eigen::Vector2d::Zero(), lorry);
+  EXPECT_EQ(lorry.mean, before.mean) << "It is longer already.";
+  Lengthen(14.0, 1.5, Eigen::Vector2d::Zero(), lorry);
+  EXPECT_DOUBLE_EQ(lorry.mean[ExtendedState::kLength], 14.0);
+  const double face = before.mean[kX] - 0.5 * before.mean[ExtendedState::kLength];
+  EXPECT_NEAR(lorry.mean[kX] - 7.0, face, 1e-9);
+  EXPECT_GT(lorry.covariance(kX, ExtendedState::kLength),
+            before.covariance(kX, ExtendedState::kLength));
+}
+
 // A radar that sees the front half of a passing car gets a mean half a length/2 ahead of that of
 // the whole side: with the share known, the car must hardly follow and say that it is unsure.
 TEST(UpdateExtended, PartlyVisibleSideDoesNotDragTheVehicle) {
