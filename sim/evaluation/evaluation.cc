@@ -107,6 +107,13 @@ std::unique_ptr<Evaluation> Evaluate(RunLog log, const ScoringSettings& settings
     evaluation->cutoffs.push_back(std::move(scores));
   }
   ScorePriorityExtras(*evaluation);
+  const auto behaviour_of = [&](ListKind kind) {
+    return JudgeList(evaluation->log, evaluation->grid, *evaluation->bound,
+                     evaluation->headline(kind), settings);
+  };
+  evaluation->behaviour.local = behaviour_of(ListKind::kLocal);
+  evaluation->behaviour.priority = behaviour_of(ListKind::kPriority);
+  evaluation->behaviour.confirmation = JudgeConfirmation(evaluation->log, settings);
   SetGates(*evaluation);
   return evaluation;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/evaluation/behaviour.h"
 #include "sim/evaluation/scoring.h"
 
 namespace v2vouch::evaluation {
@@ -42,6 +43,7 @@ struct Evaluation {
   double duration_s = 0.0;            ///< First to last truth sample.
   std::vector<CutoffScores> cutoffs;  ///< The headline first, then 10 and 30 where they differ.
   HiddenError hidden;
+  Behaviour behaviour;
   double validated_share = 0.0;           ///< Of the time PRIORITY could hold honest V2V cars.
   std::map<std::int64_t, double> hold_s;  ///< Per V2V vehicle: seconds in PRIORITY.
   std::vector<Gate> gates;

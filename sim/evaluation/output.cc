@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "sim/evaluation/behaviour_text.h"
 #include "sim/evaluation/evaluation.h"
 
 namespace v2vouch::evaluation {
@@ -11,16 +12,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Six significant digits: enough to compare, and the same bytes from run to run.
-double Rounded(double value) {
-  if (!std::isfinite(value) || value == 0.0) return std::isfinite(value) ? 0.0 : value;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return std::strtod(text, nullptr);
-}
-
 Json AneesJson(const Anees& anees) {
-  return {{"anees", Rounded(anees.mean())}, {"samples", anees.count}};
+  return {{"anees", Rounded(anees.mean())},
+          {"samples", anees.count},
+          {"independent_samples", Rounded(anees.independent)},
+          {"band_low", Rounded(anees.low)},
+          {"band_high", Rounded(anees.high)},
+          {"is_in_band", anees.is_in_band()}};
 }
 
 Json Common(const ListScore& score) {
@@ -134,6 +132,7 @@ std::string ToJson(const Evaluation& evaluation, const Evaluation* paper) {
                     {"max_m", Rounded(evaluation.hidden.max_m)},
                     {"seconds", Rounded(evaluation.hidden.seconds)},
                     {"possible_seconds", Rounded(evaluation.hidden.possible_seconds)}};
+  json["behaviour"] = BehaviourJson(evaluation.behaviour);
   json["validated_share"] = Rounded(evaluation.validated_share);
   json["hold_s"] = Json::object();
   for (const auto& [id, seconds] : evaluation.hold_s) {
@@ -198,9 +197,12 @@ std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
       evaluation.hidden.possible_seconds);
   out += Line("validated share %.1f %%; switches LOCAL %d, PRIORITY %d\n",
               100.0 * evaluation.validated_share, local.switches, priority.switches);
-  out += Line(
-      "ANEES (ideal 2): LOCAL visible %.2f hidden %.2f, PRIORITY visible %.2f hidden %.2f\n",
-      local.visible.mean(), local.hidden.mean(), priority.visible.mean(), priority.hidden.mean());
+  out += "ANEES (ideal 2; 95 % band)\n";
+  for (const ListScore* score : {&local, &priority}) {
+    out += Line("  %-8s visible ", ListTitle(score->kind)) + AneesText(score->visible) +
+           "; hidden " + AneesText(score->hidden) + "\n";
+  }
+  out += BehaviourTable(evaluation.behaviour);
   out += Line("T-GOSPA per instant: LOCAL %.3f, PRIORITY %.3f%s\n", local.trajectory_per_step,
               priority.trajectory_per_step,
               local.trajectory.is_exact && priority.trajectory.is_exact ? "" : " (upper bounds)");

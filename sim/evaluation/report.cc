@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 
+#include "sim/evaluation/behaviour_text.h"
 #include "sim/evaluation/birds_eye.h"
 #include "sim/evaluation/moments.h"
 #include "sim/evaluation/report_tables.h"
@@ -202,6 +203,13 @@ std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper) {
   }
   out += Card("Who is held when", "", Timeline(evaluation, 24));
   out += Card("Details", "", DetailsHtml(evaluation));
+  out +=
+      Card("Behaviour",
+           "Heading errors are those of tracks older than a second; a flip is a track that turns "
+           "from below 90&deg; of error to above. Visibility: the lists' flag against TRUTH; "
+           "\"visible\" is also said where it cannot be told. A look is a sensor frame with a "
+           "detection probability of at least one half.",
+           BehaviourHtml(evaluation.behaviour));
   out += Card("How to read this", "", DefinitionsHtml(evaluation));
   return out + "</main></body></html>\n";
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/evaluation/behaviour_text.h"
 #include "sim/evaluation/svg.h"
 
 namespace v2vouch::evaluation {
@@ -121,10 +122,15 @@ std::string DetailsHtml(const Evaluation& evaluation) {
       [](const ListScore& s) { return s.localisation_rms_m; });
   row("position error of all vehicles held, RMS [m]", 3,
       [](const ListScore& s) { return s.localisation_all_rms_m; });
-  row("ANEES visible (ideal 2)", 2,
-      [](const ListScore& s) { return s.visible.count > 0 ? s.visible.mean() : kNone; });
-  row("ANEES hidden (ideal 2)", 2,
-      [](const ListScore& s) { return s.hidden.count > 0 ? s.hidden.mean() : kNone; });
+  const auto anees_row = [&](const std::string& name, Anees ListScore::*which) {
+    out += "<tr><td>" + name + "</td>";
+    for (const ListKind kind : kLists) {
+      out += "<td>" + AneesText(evaluation.headline(kind).*which) + "</td>";
+    }
+    out += "</tr>\n";
+  };
+  anees_row("ANEES visible (ideal 2; 95 % band)", &ListScore::visible);
+  anees_row("ANEES hidden", &ListScore::hidden);
   row("T-GOSPA per instant [m]", 3, [](const ListScore& s) { return s.trajectory_per_step; });
   row("vehicles followed by another track than before", 0,
       [](const ListScore& s) { return s.switches; });

@@ -90,6 +90,8 @@ class Reader {
       out.width_m = track.width_m;
       out.object_class = track.object_class;
       out.sender = SenderFrom(track.v2v_id);
+      out.start = FromMicros(track.start_utime);
+      out.visibility = track.visibility;
       list.tracks.push_back(out);
     }
     log_.lists[Index(kind)].push_back(std::move(list));

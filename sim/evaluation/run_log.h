@@ -32,6 +32,8 @@ struct ListedTrack {
   double width_m = 0.0;
   int object_class = 0;
   std::uint32_t sender = 0;
+  Timestamp start{};   ///< When the track began.
+  int visibility = 0;  ///< Constants of track_t: visible, hidden, out of view.
 };
 
 struct ReceivedList {

@@ -41,6 +41,8 @@ SensorSpec FromRadar(const RadarConfig& radar, double noise_scale) {
   spec.x_m = radar.x_m;
   spec.y_m = radar.y_m;
   spec.yaw_rad = radar.yaw_rad;
+  spec.half_fov_rad = radar.half_fov_rad;
+  spec.max_range_m = radar.max_range_m;
   spec.period_s = radar.period_s;
   spec.range_sigma_m = noise_scale * radar.range_sigma_m;
   spec.azimuth_sigma_rad = noise_scale * radar.azimuth_sigma_rad;
@@ -56,6 +58,8 @@ SensorSpec FromCamera(const CameraConfig& camera, double noise_scale) {
   spec.y_m = camera.y_m;
   spec.z_m = camera.z_m;
   spec.yaw_rad = camera.yaw_rad;
+  spec.half_fov_rad = std::atan2(0.5 * camera.image_width_px, camera.fx_px);
+  spec.max_range_m = camera.max_range_m;
   spec.period_s = camera.period_s;
   // The middle of two edges.
   spec.azimuth_sigma_rad = noise_scale * camera.edge_sigma_px / camera.fx_px / std::sqrt(2.0);
@@ -69,6 +73,8 @@ void ReadRadar(const YAML::Node& node, RadarConfig& radar) {
   Read(node, "x_m", radar.x_m);
   Read(node, "y_m", radar.y_m);
   ReadDegrees(node, "yaw_deg", radar.yaw_rad);
+  ReadDegrees(node, "half_fov_deg", radar.half_fov_rad);
+  Read(node, "max_range_m", radar.max_range_m);
   Read(node, "period_s", radar.period_s);
   Read(node, "range_sigma_m", radar.range_sigma_m);
   ReadDegrees(node, "azimuth_sigma_deg", radar.azimuth_sigma_rad);
@@ -83,6 +89,10 @@ void ReadCamera(const YAML::Node& node, CameraConfig& camera) {
   ReadDegrees(node, "yaw_deg", camera.yaw_rad);
   Read(node, "period_s", camera.period_s);
   Read(node, "fx_px", camera.fx_px);
+  Read(node, "max_range_m", camera.max_range_m);
+  double image_width_px = camera.image_width_px;
+  Read(node, "image_width_px", image_width_px);
+  camera.image_width_px = static_cast<int>(image_width_px);
   Read(node, "fy_px", camera.fy_px);
   Read(node, "edge_sigma_px", camera.edge_sigma_px);
   ReadDegrees(node, "pitch_sigma_deg", camera.pitch_sigma_rad);

@@ -7,7 +7,7 @@
 
 namespace v2vouch::evaluation {
 
-/// What the bound has to know of one own sensor.
+/// What the evaluator has to know of one own sensor.
 struct SensorSpec {
   std::string channel;  ///< RADAR_<NAME> or CAMERA_<NAME>.
   bool is_radar = true;
@@ -15,6 +15,8 @@ struct SensorSpec {
   double y_m = 0.0;
   double z_m = 0.0;
   double yaw_rad = 0.0;
+  double half_fov_rad = 1.0;  ///< Covered azimuth is +- this.
+  double max_range_m = 80.0;
   double period_s = 0.05;
   double range_sigma_m = 0.25;      ///< Radar: of one reflection, as the next two.
   double azimuth_sigma_rad = 0.01;  ///< Camera: of a box's middle.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "sim/evaluation/consistency.h"
 #include "sim/evaluation/placing.h"
 
 namespace v2vouch::evaluation {
@@ -142,6 +143,8 @@ class Scorer {
     score_.localisation_all_rms_m = rms(all_sum_, static_cast<std::int64_t>(score_.pairs.size()));
     score_.localisation_ratio =
         bounded_variance_ > 0.0 ? std::sqrt(bounded_sum_ / bounded_variance_) : 0.0;
+    SetBand(score_.pairs, false, score_.visible);
+    SetBand(score_.pairs, true, score_.hidden);
     if (with_trajectories) ScoreTrajectories();
     return std::move(score_);
   }

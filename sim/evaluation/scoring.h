@@ -59,11 +59,16 @@ struct InstantScore {
   double bound_missed_pow = 0.0;
 };
 
-/// Averaged squared normalised error; 2 is ideal.
+/// Averaged squared normalised error of the position; 2 is ideal. Errors of one vehicle follow each
+/// other closely, so the band is that of `independent` samples (see consistency.h).
 struct Anees {
   double sum = 0.0;
   std::int64_t count = 0;
+  double independent = 0.0;
+  double low = 0.0;  ///< 95 % band of the mean of an honest covariance; 0, 0 without samples.
+  double high = 0.0;
   [[nodiscard]] double mean() const { return count > 0 ? sum / static_cast<double>(count) : 0.0; }
+  [[nodiscard]] bool is_in_band() const { return count > 0 && mean() >= low && mean() <= high; }
 };
 
 struct ListScore {

@@ -115,6 +115,9 @@ TEST_F(EvaluatedRun, JsonHasTheAgreedShape) {
     EXPECT_TRUE(json.at("hidden").at(key).is_number()) << key;
   }
   EXPECT_TRUE(json.at("validated_share").is_number());
+  EXPECT_TRUE(json.at("lists").at("local").at("visible").at("is_in_band"));
+  EXPECT_EQ(json.at("behaviour").at("local").at("heading").at("flips"), 0);
+  EXPECT_TRUE(json.at("behaviour").at("confirmation").at("all").at("looks_mean").is_number());
   EXPECT_TRUE(json.at("hold_s").at("1").is_number());
 }
 
