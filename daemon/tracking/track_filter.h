@@ -4,51 +4,21 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "daemon/data/ego.h"
-#include "daemon/data/measurement.h"
 #include "daemon/data/track.h"
-#include "daemon/data/vehicle.h"
-#include "daemon/models/ctra.h"
-#include "daemon/models/extent.h"
-#include "daemon/models/measurement_model.h"
+#include "daemon/tracking/point_filter.h"
+#include "daemon/tracking/sensor_look.h"
+#include "daemon/tracking/vehicle_filter.h"
 
 namespace v2vouch {
 
-/// One radar or camera together with the ego's state at the moment it looked.
-struct RadarLook {
-  const EgoState& ego;
-  const RadarConfig& radar;
-  [[nodiscard]] Eigen::Vector2d origin_O() const;
-};
-struct CameraLook {
-  const EgoState& ego;
-  const CameraConfig& camera;
-  [[nodiscard]] Eigen::Vector2d origin_O() const;
-};
-
-/// Where a measurement alone puts the reflecting point, with its covariance, in O [m].
-struct Fix {
-  Eigen::Vector2d p_O = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
-};
-Fix FixOf(const RadarLook& look, const RadarMeasurement& measurement);
-/// nullopt where the box has no usable bottom edge or bearing, or lies on the horizon.
-std::optional<Fix> FixOf(const CameraLook& look, const CameraMeasurement& measurement);
-
-/// What the filter has to know beside the measurement.
-struct FilterSettings {
-  MotionNoise motion;
-  bool point_targets = false;  ///< Detections are of the centre: no extent model.
-};
-
 /// Filter of one vehicle. It lives in two stages:
 ///
-/// 1. *point*: position and velocity of the reflecting point, constant velocity, while the
-/// direction
-///    of travel is unknown. One look gives the radial velocity only; a crossing vehicle would have
-///    its heading wrong by 90 degrees in any model that needs one.
-/// 2. *vehicle*: CTRA with size (ExtendedState), from the moment the velocity points somewhere
-///    (heading sigma below 0.25 rad) on. There is no way back: a vehicle that stops keeps its yaw.
+/// 1. *point* (PointFilter): position and velocity of the reflecting point, while nothing is known
+///    about the direction. A crossing vehicle would have its heading wrong by 90 degrees in any
+///    model that needs one.
+/// 2. *vehicle* (VehicleFilter): CTRA with size, from the moment the velocity points somewhere
+///    (heading sigma below 0.15 rad) or is known to be none on. There is no way back: a vehicle
+///    that stops keeps its yaw.
 class TrackFilter {
  public:
   static TrackFilter FromRadar(const RadarLook& look, const RadarMeasurement& measurement,
@@ -58,17 +28,13 @@ class TrackFilter {
 
   void Predict(double dt_s, const FilterSettings& settings);
 
-  [[nodiscard]] std::optional<Likelihood> Evaluate(const RadarLook& look,
-                                                   const RadarMeasurement& measurement,
-                                                   const FilterSettings& settings) const;
-  [[nodiscard]] std::optional<Likelihood> Evaluate(const CameraLook& look,
-                                                   const CameraMeasurement& measurement,
+  /// The squared distance is that of the best component, the density that of the whole mixture.
+  template <class Look, class Measurement>
+  [[nodiscard]] std::optional<Likelihood> Evaluate(const Look& look, const Measurement& z,
                                                    const FilterSettings& settings) const;
   /// @return false on numerical failure; the track must be dropped.
-  bool Update(const RadarLook& look, const RadarMeasurement& measurement,
-              const FilterSettings& settings);
-  bool Update(const CameraLook& look, const CameraMeasurement& measurement,
-              const FilterSettings& settings);
+  template <class Look, class Measurement>
+  bool Update(const Look& look, const Measurement& z, const FilterSettings& settings);
 
   /// Takes the class's typical size for what nobody measured yet.
   void SetClass(ObjectClass object_class);
@@ -88,18 +54,12 @@ class TrackFilter {
   [[nodiscard]] Eigen::Matrix2d position_covariance() const;
 
  private:
-  template <class Look, class Measurement>
-  bool UpdateVehicle(const Look& look, const Measurement& measurement,
-                     const FilterSettings& settings);
-  [[nodiscard]] bool HasDirection(double max_sigma_rad) const;
-  [[nodiscard]] ExtendedState AsVehicle(bool has_direction, const FilterSettings& settings) const;
-  void PromoteIfDirected(const FilterSettings& settings);
+  void PromoteIfClear(const FilterSettings& settings);
 
   bool is_vehicle_ = false;
   double age_s_ = 0.0;
-  ExtendedState vehicle_;
-  Eigen::Vector4d point_ = Eigen::Vector4d::Zero();  // x, y, vx, vy in O.
-  Eigen::Matrix4d point_covariance_ = Eigen::Matrix4d::Identity();
+  PointFilter point_;
+  VehicleFilter vehicle_;
   Eigen::Vector2d seen_from_ = Eigen::Vector2d::Zero();  // Last sensor that saw it, in O.
   double default_yaw_rad_ = 0.0;
   ObjectClass object_class_ = ObjectClass::kUnknown;

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "daemon/models/measurement_model.h"
+#include "daemon/tracking/sensor_look.h"
+
+namespace v2vouch {
+
+/// Position and velocity of a vehicle's reflecting point in O, constant velocity with white
+/// acceleration. One look gives the radial velocity only, so a new track has no direction yet that
+/// a model of a vehicle could start from.
+class PointFilter {
+ public:
+  /// @param is_exact the detections are of the vehicle's centre, free of the reflections' scatter.
+  static PointFilter FromRadar(const RadarLook& look, const RadarMeasurement& z, bool is_exact);
+  static PointFilter FromCamera(const CameraLook& look, const Fix& fix);
+
+  void Predict(double dt_s);
+
+  [[nodiscard]] std::optional<Likelihood> Evaluate(const RadarLook& look, const RadarMeasurement& z,
+                                                   bool is_exact) const;
+  [[nodiscard]] std::optional<Likelihood> Evaluate(const CameraLook& look,
+                                                   const CameraMeasurement& z, bool is_exact) const;
+  /// @return false on numerical failure; state untouched.
+  bool Update(const RadarLook& look, const RadarMeasurement& z, bool is_exact);
+  bool Update(const CameraLook& look, const CameraMeasurement& z, bool is_exact);
+
+  /// The velocity points somewhere: at least 1 m/s, known to 20 % along it, and across it to
+  /// `max_sigma_rad` as an angle.
+  [[nodiscard]] bool HasDirection(double max_sigma_rad) const;
+  /// It stands: slower than 1 m/s, and known to be, in every direction.
+  [[nodiscard]] bool IsStanding() const;
+
+  [[nodiscard]] Eigen::Vector2d position() const { return mean_.head<2>(); }
+  [[nodiscard]] Eigen::Vector2d velocity() const { return mean_.tail<2>(); }
+  /// Of x, y, vx, vy.
+  [[nodiscard]] const Eigen::Matrix4d& covariance() const { return covariance_; }
+
+ private:
+  Eigen::Vector4d mean_ = Eigen::Vector4d::Zero();
+  Eigen::Matrix4d covariance_ = Eigen::Matrix4d::Identity();
+};
+
+}  // namespace v2vouch

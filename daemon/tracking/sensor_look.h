@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "daemon/data/ego.h"
+#include "daemon/data/measurement.h"
+#include "daemon/data/vehicle.h"
+
+namespace v2vouch {
+
+/// One radar or camera together with the ego's state at the moment it looked.
+struct RadarLook {
+  const EgoState& ego;
+  const RadarConfig& radar;
+  [[nodiscard]] Eigen::Vector2d origin_O() const;
+};
+struct CameraLook {
+  const EgoState& ego;
+  const CameraConfig& camera;
+  [[nodiscard]] Eigen::Vector2d origin_O() const;
+};
+
+/// Where a measurement alone puts the reflecting point, with its covariance, in O [m].
+struct Fix {
+  Eigen::Vector2d p_O = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
+};
+Fix FixOf(const RadarLook& look, const RadarMeasurement& measurement);
+/// nullopt where the box has no usable bottom edge or bearing, or lies on the horizon.
+std::optional<Fix> FixOf(const CameraLook& look, const CameraMeasurement& measurement);
+
+}  // namespace v2vouch

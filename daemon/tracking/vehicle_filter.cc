@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tracking/vehicle_filter.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "daemon/base/angle.h"
+#include "daemon/models/kalman.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr double kInitialYawRateSigma_radps = 0.1;
+constexpr double kInitialAccelSigma_mps2 = 1.5;
+// The spread of a cluster speaks about the size only where it is not absurd.
+constexpr double kSpanGate = 9.0;
+// Clusters of a vehicle of which less is visible do not measure its size: what covers it may have
+// given them a reflection.
+constexpr double kSpanShare = 0.9;
+// Seen at a smaller angle than this (its sine), a vehicle's length hides behind its near face:
+// what a camera seems to say about it is its own lasting error.
+constexpr double kLengthShows = 0.3;
+// Axes of a standing vehicle: most stand along the road or across it.
+constexpr std::array<double, VehicleFilter::kMostAxes> kAxisWeight = {0.4, 0.3, 0.15, 0.15};
+constexpr std::array<double, VehicleFilter::kMostAxes> kAxisTurn_rad = {0.0, kPi / 2, kPi / 4,
+                                                                        -kPi / 4};
+constexpr double kAxisSigma_rad = 0.25;
+constexpr double kLeastWeight = 0.005;
+constexpr double kSameAxis_rad = 0.1;
+// Driving forwards or backwards is no longer in doubt.
+constexpr double kDriving_mps = 1.0;
+constexpr double kDrivingSigmas = 3.0;
+
+template <class Measurement>
+constexpr bool kLearnsSize = std::is_same_v<Measurement, CameraMeasurement>;
+
+std::optional<Linearized> Linearize(const ExtendedState& state, const Extent& extent,
+                                    const RadarLook& look, const RadarMeasurement& z) {
+  return LinearizeRadar(state.mean.head<kStateSize>(), extent, look.ego, look.radar, z);
+}
+std::optional<Linearized> Linearize(const ExtendedState& state, const Extent& extent,
+                                    const CameraLook& look, const CameraMeasurement& z) {
+  return LinearizeCamera(state.mean.head<kStateSize>(), extent, look.ego, look.camera, z);
+}
+
+Extent AssumedExtent(const ExtendedState& state, const FilterSettings& settings) {
+  return settings.point_targets ? Extent{0.0, 0.0, 0.0, 0.0} : state.assumed_extent();
+}
+
+// A standing vehicle shows a radar the same reflections in scan after scan: as evidence for an axis
+// they would count again and again, always for the axis that allows them the least scatter.
+bool SpeaksOfAxis(const RadarMeasurement& z) { return !z.is_static; }
+bool SpeaksOfAxis(const CameraMeasurement&) { return true; }
+
+// States that a look may not teach, as bits.
+unsigned Frozen(const ExtendedState& state, const Eigen::Vector2d& seen_from_O) {
+  const Eigen::Vector2d line = (state.mean.head<2>() - seen_from_O).normalized();
+  const double aspect = std::atan2(line.y(), line.x()) - state.mean[kYaw];
+  return std::abs(std::sin(aspect)) < kLengthShows ? 1U << ExtendedState::kLength : 0U;
+}
+
+template <class Look, class Measurement>
+bool UpdateState(const Look& look, const Measurement& z, bool is_young,
+                 const FilterSettings& settings, ExtendedState& state) {
+  auto model = Linearize(state, AssumedExtent(state, settings), look, z);
+  if (!model) return false;
+  ExtendedState next = state;
+  const unsigned frozen = Frozen(state, look.origin_O());
+  if (!UpdateExtended(*model, next, kLearnsSize<Measurement>, frozen)) return false;
+  if (is_young) {
+    // Iterated EKF, one more round: linearise where the first update went, then apply the result to
+    // the prediction.
+    auto again = Linearize(next, AssumedExtent(next, settings), look, z);
+    if (again) {
+      ExtendedState::Vector back = state.mean - next.mean;
+      back[kYaw] = WrapAngle(back[kYaw]);
+      again->y -= again->H * back.head<kStateSize>() + again->E * back.tail<2>();
+      ExtendedState iterated = state;
+      if (UpdateExtended(*again, iterated, kLearnsSize<Measurement>, frozen)) next = iterated;
+    }
+  }
+  state = next;
+  return true;
+}
+
+// What the spread of the cluster says about the size.
+void LearnSpan(const RadarLook& look, const RadarMeasurement& z, ObjectClass object_class,
+               const FilterSettings& settings, ExtendedState& state) {
+  if (settings.point_targets || z.visible_share < kSpanShare) return;
+  const auto span = LinearizeSpan(state, look.ego, look.radar, z);
+  if (!span) return;
+  const auto likelihood = EvaluateExtended(*span, state);
+  if (!likelihood || likelihood->distance_squared >= kSpanGate) return;
+  ExtendedState grown = state;
+  if (!UpdateExtended(*span, grown)) return;
+  // A span bounds the length from below. Lorries show their far end last, so that it must not make
+  // their length certain.
+  const bool is_long = object_class == ObjectClass::kTruck || object_class == ObjectClass::kBus;
+  if (is_long) grown.covariance = state.covariance;
+  state = grown;
+}
+void LearnSpan(const CameraLook&, const CameraMeasurement&, ObjectClass, const FilterSettings&,
+               ExtendedState&) {}
+
+}  // namespace
+
+// Centre = point - offset of the reflections, with the derivatives that tie the centre to direction
+// and size.
+ExtendedState VehicleAt(const PointFilter& point, double yaw_rad, double yaw_sigma_rad,
+                        const Extent& size, const Eigen::Vector2d& seen_from_O,
+                        const FilterSettings& settings) {
+  const bool has_direction = yaw_sigma_rad == 0.0;
+  const Eigen::Vector2d v = point.velocity();
+  const double yaw = has_direction ? std::atan2(v.y(), v.x()) : yaw_rad;
+  const Eigen::Vector2d forward(std::cos(yaw), std::sin(yaw));
+  const Eigen::Vector2d p_SQ = point.position() - seen_from_O;
+
+  // Offset in axes of O, with the sensor seen from the point instead of from the centre: both lie
+  // on nearly the same line. The distance is stretched by half a width, where the centre is.
+  const auto offset_O = [&](double at_yaw_rad, const Extent& extent) -> Eigen::Vector2d {
+    if (settings.point_targets) return Eigen::Vector2d::Zero();
+    const double range = std::max(p_SQ.norm(), 0.5);
+    const Eigen::Vector2d p_OS = -p_SQ * (1.0 + 0.5 * extent.width_m / range);
+    return Eigen::Rotation2D<double>(at_yaw_rad) * ReflectionOffset(p_OS, at_yaw_rad, extent);
+  };
+  ExtendedState out;
+  const Eigen::Vector2d centre = point.position() - offset_O(yaw, size);
+  const double speed = has_direction ? v.norm() : v.dot(forward);
+  out.mean << centre, yaw, speed, 0.0, 0.0, size.length_m, size.width_m;
+
+  // Inputs: point, velocity, yaw (where only assumed), length, width.
+  Eigen::Matrix<double, ExtendedState::kSize, 7> J =
+      Eigen::Matrix<double, ExtendedState::kSize, 7>::Zero();
+  const double h = 1e-4;
+  const Eigen::Vector2d by_yaw = (offset_O(yaw + h, size) - offset_O(yaw - h, size)) / (2.0 * h);
+  Extent longer = size, wider = size;
+  longer.length_m += h;
+  wider.width_m += h;
+  J.topLeftCorner<2, 2>().setIdentity();
+  J.block<2, 1>(0, 5) = -(offset_O(yaw, longer) - offset_O(yaw, size)) / h;
+  J.block<2, 1>(0, 6) = -(offset_O(yaw, wider) - offset_O(yaw, size)) / h;
+  J.block<1, 2>(kSpeed, 2) = forward.transpose();
+  J(ExtendedState::kLength, 5) = 1.0;
+  J(ExtendedState::kWidth, 6) = 1.0;
+  Eigen::Matrix<double, 7, 7> P = Eigen::Matrix<double, 7, 7>::Zero();
+  P.topLeftCorner<4, 4>() = point.covariance();
+  if (has_direction) {
+    const Eigen::RowVector2d yaw_by_v =
+        Eigen::RowVector2d(-v.y(), v.x()) / std::max(v.squaredNorm(), 1e-6);
+    J.block<1, 2>(kYaw, 2) = yaw_by_v;
+    J.block<2, 2>(0, 2) = -by_yaw * yaw_by_v;
+  } else {
+    J(kYaw, 4) = 1.0;
+    J.block<2, 1>(0, 4) = -by_yaw;
+    P(4, 4) = yaw_sigma_rad * yaw_sigma_rad;
+  }
+  P(5, 5) = size.length_sigma_m * size.length_sigma_m;
+  P(6, 6) = size.width_sigma_m * size.width_sigma_m;
+  out.covariance = J * P * J.transpose();
+  out.covariance(kYawRate, kYawRate) = kInitialYawRateSigma_radps * kInitialYawRateSigma_radps;
+  out.covariance(kAccel, kAccel) = kInitialAccelSigma_mps2 * kInitialAccelSigma_mps2;
+  return out;
+}
+
+VehicleFilter& VehicleFilter::operator=(const VehicleFilter& other) {
+  std::copy_n(other.components_.begin(), other.count_, components_.begin());
+  count_ = other.count_;
+  has_driven_ = other.has_driven_;
+  return *this;
+}
+
+void VehicleFilter::StartMoving(const PointFilter& point, const Extent& size,
+                                const Eigen::Vector2d& seen_from_O,
+                                const FilterSettings& settings) {
+  components_[0] = {VehicleAt(point, 0.0, 0.0, size, seen_from_O, settings), 1.0};
+  count_ = 1;
+  has_driven_ = true;
+}
+
+void VehicleFilter::StartStanding(const PointFilter& point, double likely_yaw_rad,
+                                  const Extent& size, const Eigen::Vector2d& seen_from_O,
+                                  const FilterSettings& settings) {
+  count_ = kMostAxes;
+  for (std::size_t i = 0; i < kMostAxes; ++i) {
+    const double yaw = WrapAngle(likely_yaw_rad + kAxisTurn_rad[i]);
+    components_[i] = {VehicleAt(point, yaw, kAxisSigma_rad, size, seen_from_O, settings),
+                      kAxisWeight[i]};
+  }
+  has_driven_ = false;
+}
+
+void VehicleFilter::Predict(double dt_s, const FilterSettings& settings) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    PredictExtended(components_[i].state, dt_s, settings.motion);
+  }
+}
+
+template <class Look, class Measurement>
+std::optional<Likelihood> VehicleFilter::Evaluate(const Look& look, const Measurement& z,
+                                                  ObjectClass object_class,
+                                                  const FilterSettings& settings) const {
+  std::optional<Likelihood> best;
+  double least = 0.0;  // Of distance + log determinant - 2 ln weight.
+  double sum = 0.0;    // Of the components' likelihoods, relative to the best one's.
+  for (std::size_t i = 0; i < count_; ++i) {
+    const ExtendedState* state = &components_[i].state;
+    ExtendedState named;
+    // A radar track is measured against what the box says it is: an 11 m lorry's silhouette is no
+    // outlier of a car's.
+    if constexpr (kLearnsSize<Measurement>) {
+      if (object_class == ObjectClass::kUnknown && z.object_class != ObjectClass::kUnknown) {
+        named = *state;
+        v2vouch::AssumeClass(object_class, z.object_class, named);
+        state = &named;
+      }
+    }
+    const auto model = Linearize(*state, AssumedExtent(*state, settings), look, z);
+    if (!model) continue;
+    const auto likelihood = EvaluateExtended(*model, *state);
+    if (!likelihood) continue;
+    const double cost =
+        likelihood->distance_squared + likelihood->log_det - 2.0 * std::log(components_[i].weight);
+    if (!best || cost < least) {
+      sum = best ? sum * std::exp(0.5 * (cost - least)) + 1.0 : 1.0;
+      least = cost;
+      best = likelihood;
+    } else {
+      sum += std::exp(0.5 * (least - cost));
+    }
+  }
+  if (best) best->log_det = least - best->distance_squared - 2.0 * std::log(sum);
+  return best;
+}
+
+template <class Look, class Measurement>
+bool VehicleFilter::Update(const Look& look, const Measurement& z, ObjectClass object_class,
+                           bool is_young, const FilterSettings& settings) {
+  std::array<double, kMostAxes> fit{};
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    Component& component = components_[i];
+    double log_likelihood = 0.0;
+    if (count_ > 1 && SpeaksOfAxis(z)) {
+      const auto model =
+          Linearize(component.state, AssumedExtent(component.state, settings), look, z);
+      const auto likelihood = model ? EvaluateExtended(*model, component.state) : std::nullopt;
+      if (!likelihood) continue;
+      log_likelihood = -0.5 * (likelihood->distance_squared + likelihood->log_det);
+    }
+    if (!UpdateState(look, z, is_young, settings, component.state)) continue;
+    LearnSpan(look, z, object_class, settings, component.state);
+    fit[kept] = log_likelihood;
+    if (kept != i) components_[kept] = component;
+    ++kept;
+  }
+  if (kept == 0) return false;
+  count_ = kept;
+  if (count_ > 1) Weigh(std::span(fit).first(count_));
+  TurnRound();
+  return true;
+}
+
+// New weights; drops the components that lost, and one of two that have come to agree.
+void VehicleFilter::Weigh(std::span<const double> log_likelihoods) {
+  const double most = *std::max_element(log_likelihoods.begin(), log_likelihoods.end());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    components_[i].weight *= std::exp(log_likelihoods[i] - most);
+    sum += components_[i].weight;
+  }
+  for (std::size_t i = 0; i < count_; ++i) components_[i].weight /= sum;
+  for (std::size_t i = 1; i < count_; ++i) {
+    for (std::size_t k = i; k > 0 && components_[k].weight > components_[k - 1].weight; --k) {
+      std::swap(components_[k], components_[k - 1]);
+    }
+  }
+  std::size_t kept = 1;
+  for (std::size_t i = 1; i < count_; ++i) {
+    const double yaw = components_[i].state.mean[kYaw];
+    bool is_needed = components_[i].weight >= kLeastWeight;
+    for (std::size_t k = 0; k < kept && is_needed; ++k) {
+      // Axes have no front: half a turn is the same.
+      const double turn = std::abs(std::sin(yaw - components_[k].state.mean[kYaw]));
+      is_needed = turn > kSameAxis_rad;
+    }
+    if (is_needed) components_[kept++] = components_[i];
+  }
+  count_ = kept;
+  sum = 0.0;
+  for (std::size_t i = 0; i < count_; ++i) sum += components_[i].weight;
+  for (std::size_t i = 0; i < count_; ++i) components_[i].weight /= sum;
+}
+
+// What sets off for the first time does so forwards, most likely.
+void VehicleFilter::TurnRound() {
+  if (has_driven_) return;
+  const ExtendedState& state = best();
+  const double sigma = std::sqrt(std::max(state.covariance(kSpeed, kSpeed), 0.0));
+  if (std::abs(state.mean[kSpeed]) < std::max(kDriving_mps, kDrivingSigmas * sigma)) return;
+  has_driven_ = true;
+  for (std::size_t i = 0; i < count_; ++i) {
+    ExtendedState& turned = components_[i].state;
+    if (turned.mean[kSpeed] >= 0.0) continue;
+    turned.mean[kYaw] = WrapAngle(turned.mean[kYaw] + kPi);
+    for (const int k : {static_cast<int>(kSpeed), static_cast<int>(kAccel)}) {
+      turned.mean[k] = -turned.mean[k];
+      turned.covariance.row(k) *= -1.0;
+      turned.covariance.col(k) *= -1.0;
+    }
+  }
+}
+
+void VehicleFilter::AssumeClass(ObjectClass from, ObjectClass to) {
+  for (std::size_t i = 0; i < count_; ++i) v2vouch::AssumeClass(from, to, components_[i].state);
+}
+
+void VehicleFilter::Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    v2vouch::Lengthen(length_m, sigma_m, seen_from_O, components_[i].state);
+  }
+}
+
+ExtendedState VehicleFilter::Show() const {
+  ExtendedState out = best();
+  if (count_ == 1) return out;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < count_; ++i) {
+    mean += components_[i].weight * components_[i].state.mean.head<2>();
+  }
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Eigen::Vector2d off = components_[i].state.mean.head<2>() - mean;
+    out.covariance.topLeftCorner<2, 2>() += components_[i].weight * off * off.transpose();
+  }
+  out.mean.head<2>() = mean;
+  return out;
+}
+
+template std::optional<Likelihood> VehicleFilter::Evaluate(const RadarLook&,
+                                                           const RadarMeasurement&, ObjectClass,
+                                                           const FilterSettings&) const;
+template std::optional<Likelihood> VehicleFilter::Evaluate(const CameraLook&,
+                                                           const CameraMeasurement&, ObjectClass,
+                                                           const FilterSettings&) const;
+template bool VehicleFilter::Update(const RadarLook&, const RadarMeasurement&, ObjectClass, bool,
+                                    const FilterSettings&);
+template bool VehicleFilter::Update(const CameraLook&, const CameraMeasurement&, ObjectClass, bool,
+                                    const FilterSettings&);
+
+}  // namespace v2vouch
