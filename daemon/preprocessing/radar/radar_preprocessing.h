@@ -23,8 +23,8 @@ struct RadarPreprocessingConfig {
   double rcs_slope_db = 0.0;    ///< ... and this much more per doubling of range beyond.
   double eps_m = 1.2;           ///< DBSCAN radius of moving reflections at the antenna ...
   double eps_per_m = 0.005;     ///< ... and its growth with range, as lateral noise grows.
-  double static_eps_m = 1.6;    ///< The same two of standing ones, whose clusters never join.
-  double static_eps_per_m = 0.015;
+  double static_eps_m = 0.8;    ///< The same two of standing ones, whose clusters never join.
+  double static_eps_per_m = 0.008;
   double eps_speed_mps = 1.5;        ///< Compensated Doppler that counts as one radius.
   int min_points = 1;                ///< Returns of a core point, itself included.
   double vehicle_gap_m = 4.0;        ///< Moving clusters this close may join; 0: they never do ...
