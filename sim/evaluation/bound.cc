@@ -87,6 +87,11 @@ class Walk {
     local_.AddSensor(sensor, *ego, *target, p);
     fused_.AddSensor(sensor, *ego, *target, p);
     looks_ += p;
+    // A standing radar return starts no LOCAL track by itself: it may be a post.
+    if (!sensor.is_radar || std::abs(target->speed_mps) >= settings_.moving_mps) {
+      starting_looks_ += p;
+      last_starting_ = look.received;
+    }
     last_look_ = look.received;
     if (p >= kCertain) last_seen_ = look.received;
   }
@@ -135,18 +140,20 @@ class Walk {
   }
 
   void FinishLocal(Timestamp t, BoundCell& cell) {
-    if (!is_local_ && !Within(last_look_, t, kForgetLooks_s)) looks_ = 0.0;
-    if (!is_local_ && looks_ >= settings_.looks_to_confirm) {
+    if (!is_plain_ && !Within(last_look_, t, kForgetLooks_s)) looks_ = 0.0;
+    if (!is_local_ && !Within(last_starting_, t, kForgetLooks_s)) starting_looks_ = 0.0;
+    is_plain_ |= looks_ >= settings_.looks_to_confirm;
+    if (!is_local_ && starting_looks_ >= settings_.looks_to_confirm) {
       is_local_ = true;
       confirmed_ = t;
     }
-    if (is_local_ && !WorthKeeping(local_)) {
-      is_local_ = false;
-      looks_ = 0.0;
+    if (is_plain_ && !WorthKeeping(local_)) {
+      is_local_ = is_plain_ = false;
+      looks_ = starting_looks_ = 0.0;
       local_.Reset();
     }
     cell.is_held = is_local_;
-    cell.is_held_plain = is_local_;
+    cell.is_held_plain = is_plain_;
     cell.variance_m2 = local_.position_variance_m2();
   }
 
@@ -187,10 +194,11 @@ class Walk {
 
   void Restart() {
     for (auto* filter : {&local_, &fused_, &heard_}) filter->Reset();
-    looks_ = 0.0;
+    looks_ = starting_looks_ = 0.0;
     messages_ = 0;
-    is_local_ = is_known_ = cell_begun_ = false;
+    is_plain_ = is_local_ = is_known_ = cell_begun_ = false;
     first_heard_ = last_heard_ = last_look_ = last_seen_ = confirmed_ = std::nullopt;
+    last_starting_ = std::nullopt;
   }
 
   const RunLog& log_;
@@ -201,9 +209,12 @@ class Walk {
   bool is_present_ = false;
   double pending_yaw_rad_ = 0.0;
   double looks_ = 0.0;
+  double starting_looks_ = 0.0;  // Of these, the ones that may start a LOCAL track.
   int messages_ = 0;
+  std::optional<Timestamp> last_starting_;
   std::optional<Timestamp> last_look_, last_seen_, first_heard_, last_heard_, confirmed_;
-  bool is_local_ = false;
+  bool is_plain_ = false;    // Looked at twice, by whatever sensor.
+  bool is_local_ = false;    // Looked at twice in a way that may start a track.
   bool is_known_ = false;    // Confirmed by own sensors and not given up since.
   bool cell_begun_ = false;  // Was matched to its sender since.
   Timestamp known_since_{};

@@ -11,15 +11,17 @@ namespace v2vouch::evaluation {
 
 /// What the best possible list could know of one true vehicle at one instant.
 struct BoundCell {
-  bool is_held = false;        ///< Could be in the list.
-  bool is_held_plain = false;  ///< PRIORITY without the validation time: from the second look.
-  double variance_m2 = 0.0;    ///< E |position error|^2 of an unbiased estimate; where held.
+  bool is_held = false;  ///< Could be in the list.
+  /// By the plain rule: LOCAL from the second look of any sensor, PRIORITY without validation time.
+  bool is_held_plain = false;
+  double variance_m2 = 0.0;  ///< E |position error|^2 of an unbiased estimate; where held.
 };
 
 struct BoundSettings {
   double drop_cutoff_m = 10.0;    ///< c of the rule below, for every c reported.
   double validation_s = 1.5;      ///< PRIORITY: counted from max(first BSM, sensor confirmation).
   double looks_to_confirm = 1.5;  ///< Sum of detection probabilities: passed in the second look.
+  double moving_mps = 1.0;        ///< From here on a radar alone may start a LOCAL track.
   double singer_time_s = 1.5;
   double least_along_mps2 = 0.5;  ///< Floors of the realised accelerations: quiet driving.
   double least_across_mps2 = 0.3;
@@ -42,9 +44,10 @@ struct BoundSettings {
 /// and Gauss-Markov bias states, speed and heading with error states, acceleration and yaw rate;
 /// V2V has these alone.
 ///
-/// When could a vehicle be in the list? LOCAL: from its second look until hiding has made its
-/// expected truncated squared error exceed c^2/2 at c = 10 (where the existence threshold
-/// c^2 / (2 (c^2 - D)) passes 1), then again from the second look. PRIORITY: from
+/// When could a vehicle be in the list? LOCAL: from its second look that may start a track (any
+/// camera's; a radar's while it moves: a standing return alone may be a post and starts none) until
+/// hiding has made its expected truncated squared error exceed c^2/2 at c = 10 (where the existence
+/// threshold c^2 / (2 (c^2 - D)) passes 1), then again from such a look. PRIORITY: from
 /// max(first BSM, sensor confirmation) + 1.5 s while the bridging budget lasts. V2V: from the
 /// second BSM, until D passes c^2/2.
 /// Sources: Tichavsky, Muravchik, Nehorai, "Posterior Cramer-Rao bounds for discrete-time nonlinear

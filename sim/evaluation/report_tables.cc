@@ -116,7 +116,7 @@ std::string DetailsHtml(const Evaluation& evaluation) {
     out += "</tr>\n";
   };
   row("GOSPA, RMS over instants [m]", 3, [](const ListScore& s) { return s.gospa_rms; });
-  row("bound from the second look, without validation time [m]", 3,
+  row("bound from any second look, without validation time [m]", 3,
       [](const ListScore& s) { return s.bound_mean_plain; });
   row("position error of visible vehicles, RMS [m]", 3,
       [](const ListScore& s) { return s.localisation_rms_m; });

@@ -136,6 +136,8 @@ class Scorer {
     score_.bound_missed_seconds = score_.vehicle_seconds - held_seconds_;
     score_.excess_missed_share =
         held_seconds_ > 0.0 ? score_.excess_missed_seconds / held_seconds_ : 0.0;
+    score_.excess_missed_share_plain =
+        held_plain_seconds_ > 0.0 ? missed_plain_seconds_ / held_plain_seconds_ : 0.0;
     const auto rms = [](double sum, std::int64_t n) {
       return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
     };
@@ -193,6 +195,10 @@ class Scorer {
     const double held_pow = std::min(lone_pow_, std::pow(square, settings_.order / 2.0));
     bound_pow += cell.is_held ? held_pow : lone_pow_;
     plain_pow += cell.is_held_plain ? held_pow : lone_pow_;
+    if (cell.is_held_plain) {
+      held_plain_seconds_ += settings_.period_s;
+      if (!is_matched) missed_plain_seconds_ += settings_.period_s;
+    }
     if (!cell.is_held) {
       now.bound_missed_pow += lone_pow_;
       return;
@@ -250,6 +256,8 @@ class Scorer {
   double plain_sum_ = 0.0;
   double power_sum_ = 0.0;
   double held_seconds_ = 0.0;
+  double held_plain_seconds_ = 0.0;
+  double missed_plain_seconds_ = 0.0;
   double visible_sum_ = 0.0;
   double all_sum_ = 0.0;
   double bounded_sum_ = 0.0;

@@ -85,7 +85,7 @@ struct ListScore {
   double false_mean = 0.0;
   double switching_mean = 0.0;
   double bound_mean = 0.0;
-  double bound_mean_plain = 0.0;  ///< PRIORITY: from the second look, without validation time.
+  double bound_mean_plain = 0.0;  ///< By the plain rule, see BoundCell.
   double bound_missed_mean = 0.0;
 
   double switch_halves = 0.0;  ///< Sum of the half-counted switches behind switching_mean.
@@ -95,10 +95,11 @@ struct ListScore {
   double vehicle_seconds = 0.0;
   double missed_seconds = 0.0;
   double bound_missed_seconds = 0.0;
-  double excess_missed_seconds = 0.0;  ///< Missed while the bound holds the vehicle.
-  double excess_missed_share = 0.0;    ///< Of the vehicle-seconds the bound holds.
-  double localisation_rms_m = 0.0;     ///< Visible vehicles only (V2V: all).
-  double localisation_ratio = 0.0;     ///< Over the bound's RMS for the same pairs.
+  double excess_missed_seconds = 0.0;      ///< Missed while the bound holds the vehicle.
+  double excess_missed_share = 0.0;        ///< Of the vehicle-seconds the bound holds.
+  double excess_missed_share_plain = 0.0;  ///< The same for the plain bound.
+  double localisation_rms_m = 0.0;         ///< Visible vehicles only (V2V: all).
+  double localisation_ratio = 0.0;         ///< Over the bound's RMS for the same pairs.
   double localisation_all_rms_m = 0.0;
   Anees visible, hidden;
   TrajectoryGospaResult trajectory;

@@ -8,6 +8,7 @@
 #include "daemon/base/angle.h"
 #include "daemon/base/random.h"
 #include "sim/evaluation/information_filter.h"
+#include "sim/evaluation/scoring.h"
 
 namespace v2vouch::evaluation {
 namespace {
@@ -122,6 +123,44 @@ TEST(InformationFilter, MoreInformationNeverHurts) {
     ASSERT_LE(many.position_variance_m2(), few.position_variance_m2() * (1.0 + 1e-9));
     ASSERT_GT(many.position_variance_m2(), 0.0);
   }
+}
+
+// A vehicle 30 m ahead that a radar looks at from the start, a camera from the third second.
+RunLog LookedAt(double speed_mps) {
+  RunLog log;
+  log.specs.sensors = {Radar(), Camera()};
+  log.specs.sensors[0].channel = "RADAR_FRONT";
+  log.specs.sensors[1].channel = "CAMERA_FRONT";
+  TruthObject& object = log.truth.objects.emplace_back();
+  object.id = 1;
+  object.object_class = 1;
+  for (int k = 0; k <= 100; ++k) {
+    const Timestamp t = FromMicros(1'000'000 + 50'000 * k);
+    TruthSample ego{.stamp = t, .motion = {}, .is_hidden = false, .sender = 0, .looks = {}};
+    log.truth.ego.Add(ego);
+    TruthSample sample = ego;
+    sample.motion = {30.0 + speed_mps * 0.05 * k, 0.0, 0.0, speed_mps, 0.0, 0.0};
+    sample.looks = {{"RADAR_FRONT", 0.95, 1.0}, {"CAMERA_FRONT", 0.9, 1.0}};
+    object.motion.Add(sample);
+    log.looks.push_back({t, t, 0});
+    if (k >= 60) log.looks.push_back({t, t, 1});
+  }
+  return log;
+}
+
+TEST(Bound, AStandingRadarReturnAloneStartsNoLocalTrack) {
+  const auto first_held = [](const RunLog& log, bool plain) {
+    const std::vector<Timestamp> grid = MakeGrid(log.truth, {});
+    const Bound bound(log, grid);
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+      const BoundCell& cell = bound.At(ListKind::kLocal, 0, k);
+      if (plain ? cell.is_held_plain : cell.is_held) return ToSeconds(grid[k] - grid[0]);
+    }
+    return -1.0;
+  };
+  EXPECT_NEAR(first_held(LookedAt(5.0), false), 0.05, 1e-9);
+  EXPECT_NEAR(first_held(LookedAt(0.0), true), 0.05, 1e-9);
+  EXPECT_NEAR(first_held(LookedAt(0.0), false), 3.05, 1e-9);
 }
 
 // E min(d^2, c^2) of an isotropic normal error, against a large sample.
