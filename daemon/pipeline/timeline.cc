@@ -149,26 +149,24 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Outputs& outputs) {
       from > 0 && events_[from - 1]->after ? *events_[from - 1]->after : *before_;
 
   // A claim or a fix cannot change LOCAL, so LOCAL is not even asked.
+  Placement placement{.is_taken = true};
   if (is_local) {
-    if (is_last_of_local) {
-      RunLocal(place, outputs);
-    } else {
-      local_ = start.local;
-      RunLocal(from, outputs);
-    }
+    if (!is_last_of_local) local_ = start.local;
+    placement.local_frames = RunLocal(is_last_of_local ? place : from, outputs);
   }
   if (!is_last) priority_ = start.priority;
-  RunPriority(from, outputs);
+  placement.v2v_events = RunPriority(from, outputs);
 
-  const bool is_correction =
+  placement.is_correction =
       HasFrame(events_[place]->input) &&
       std::any_of(events_.begin() + static_cast<std::ptrdiff_t>(place) + 1, events_.end(),
                   [](const auto& other) { return other->has_frame; });
   Trim();
-  return {.is_taken = true, .is_correction = is_correction};
+  return placement;
 }
 
-void Timeline::RunLocal(std::size_t from, Outputs& outputs) {
+int Timeline::RunLocal(std::size_t from, Outputs& outputs) {
+  int frames = 0;
   for (std::size_t i = from; i < events_.size(); ++i) {
     Event& event = *events_[i];
     step_.Clear();
@@ -186,12 +184,15 @@ void Timeline::RunLocal(std::size_t from, Outputs& outputs) {
                           },
                           [](const GnssFix&) {}, [](const TimedClaim&) {}},
                event.input);
+    frames += HasFrame(event.input) ? 1 : 0;
     if (event.after) event.after->local = local_;
     EmitOnce(event, step_, outputs);
   }
+  return frames;
 }
 
-void Timeline::RunPriority(std::size_t from, Outputs& outputs) {
+int Timeline::RunPriority(std::size_t from, Outputs& outputs) {
+  int steps = 0;
   for (std::size_t i = from; i < events_.size(); ++i) {
     Event& event = *events_[i];
     step_.Clear();
@@ -218,9 +219,11 @@ void Timeline::RunPriority(std::size_t from, Outputs& outputs) {
                           }},
                event.input);
     event.residuals = priority_.TakeResiduals();
+    steps += std::holds_alternative<EgoMotion>(event.input) ? 0 : 1;
     if (event.after) event.after->priority = priority_;
     EmitOnce(event, step_, outputs);
   }
+  return steps;
 }
 
 void Timeline::EmitOnce(Event& event, const Outputs& step, Outputs& outputs) const {

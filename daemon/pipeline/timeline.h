@@ -51,6 +51,8 @@ class Timeline {
   struct Placement {
     bool is_taken = false;
     bool is_correction = false;  ///< A frame that later frames of LOCAL had to be re-run for.
+    int local_frames = 0;        ///< Frames that LOCAL was stepped through for it, itself included.
+    int v2v_events = 0;  ///< Frames, fixes and claims that the V2V side was stepped through.
   };
 
   /// Refusals and reports go to `outputs` once per event, however often it is re-run. What is taken
@@ -89,8 +91,9 @@ class Timeline {
   std::unique_ptr<Checkpoint> NewCheckpoint();
   [[nodiscard]] std::optional<Reason> WhyNot(const TimelineInput& input) const;
   [[nodiscard]] bool NeedsCheckpoint(const TimelineInput& input) const;
-  void RunLocal(std::size_t from, Outputs& outputs);
-  void RunPriority(std::size_t from, Outputs& outputs);
+  /// Both from event `from` to the newest. @return the number of frames / V2V events stepped.
+  int RunLocal(std::size_t from, Outputs& outputs);
+  int RunPriority(std::size_t from, Outputs& outputs);
   void EmitOnce(Event& event, const Outputs& step, Outputs& outputs) const;
   void Trim();
 
