@@ -16,6 +16,9 @@ constexpr double kStandstill_mps = 0.5;
 // A vehicle that stands stops turning with this time constant.
 constexpr double kStandstillDecay_s = 0.5;
 
+// Share of the jerk noise that a standing vehicle keeps: most of them go on standing.
+constexpr double kRestingJerk = 0.1;
+
 // Abscissae and weights of three-point Gauss-Legendre quadrature on [0, 1].
 constexpr std::array<double, 3> kNode = {0.11270166537925831, 0.5, 0.88729833462074169};
 constexpr std::array<double, 3> kWeight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
@@ -35,7 +38,7 @@ void AddNoise(const StateVector& x, double dt, const MotionNoise& noise, StateMa
   const double dt2 = dt * dt, dt3 = dt2 * dt, dt4 = dt3 * dt, dt5 = dt4 * dt;
   const double ratio = v / noise.lateral_speed_mps;
   const double mobility = Mobility(v);
-  const double qj = noise.jerk_psd;
+  const double qj = noise.jerk_psd * (kRestingJerk + (1.0 - kRestingJerk) * mobility);
   const double qw = noise.yaw_accel_psd * mobility / (1.0 + ratio * ratio);
   const double qs = noise.slip_psd * mobility / (1.0 + ratio * ratio);
 

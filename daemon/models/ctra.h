@@ -11,7 +11,7 @@ namespace v2vouch {
 /// How much a vehicle's motion may surprise us. Spectral densities of white noise that drives the
 /// highest derivative of each chain.
 struct MotionNoise {
-  double jerk_psd = 2.0;          ///< [m^2/s^5], drives acceleration.
+  double jerk_psd = 2.0;          ///< [m^2/s^5], drives acceleration; a tenth of it at standstill.
   double yaw_accel_psd = 0.05;    ///< [rad^2/s^3], drives yaw rate; see lateral_speed_mps.
   double slip_psd = 0.001;        ///< [rad^2/s], direction itself (slip, unmodelled path).
   double position_psd = 0.002;    ///< [m^2/s], both axes: drift of O, even of standing vehicles.

@@ -13,6 +13,7 @@ namespace {
 
 // A cluster belongs to a vehicle up to this far outside of its box, plus its own noise.
 constexpr double kBoxMargin_m = 0.5;
+constexpr double kStandingMargin_m = 0.3;
 // Ahead and behind vehicles keep more distance than this from each other.
 constexpr double kEndMargin_m = 1.5;
 constexpr double kMaxBlur_m = 1.5;
@@ -73,13 +74,14 @@ bool Tracker::Owns(std::size_t track, const RadarLook& look, const RadarMeasurem
   if (filter.is_vehicle()) {
     const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-x[kYaw]) * from_point;
     const Extent& extent = tracks_[track].extent;
-    const double reach = ReachAlong(tracks_[track]) + blur_m;
-    if (std::abs(inside.x()) > reach ||
-        std::abs(inside.y()) > 0.5 * extent.width_m + kBoxMargin_m + blur_m) {
+    // What stands near a standing vehicle need not belong to it.
+    const double reach = z.is_static ? 0.5 * extent.length_m : ReachAlong(tracks_[track]) + blur_m;
+    const double aside = z.is_static ? kStandingMargin_m : kBoxMargin_m + blur_m;
+    if (std::abs(inside.x()) > reach || std::abs(inside.y()) > 0.5 * extent.width_m + aside) {
       return false;
     }
     velocity += x[kYawRate] * Eigen::Vector2d(-from_point.y(), from_point.x());
-  } else if (from_point.norm() > kPointRadius_m + blur_m) {
+  } else if (z.is_static || from_point.norm() > kPointRadius_m + blur_m) {
     return false;
   }
   const Eigen::Vector2d line = (p_O - look.origin_O()).normalized();
@@ -100,7 +102,7 @@ void Tracker::AbsorbClusters(const RadarLook& look,
     const double reach_m =
         ReachAlong(tracks_[i]) + tracks_[i].extent.width_m + kPointRadius_m + kMaxBlur_m;
     candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m, [&](std::size_t j) {
-      if (owner_[j] >= 0 || measurements[j].is_static) return;
+      if (owner_[j] >= 0) return;
       if (Owns(i, look, measurements[j], candidates_[j].p_O)) owner_[j] = static_cast<int>(i);
     });
   }

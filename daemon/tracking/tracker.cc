@@ -31,7 +31,7 @@ constexpr double kForget = 1e-5;
 constexpr double kAssignmentExistence = 0.05;
 // A track just outside of a sensor's view may still be seen by it.
 constexpr double kMinDetection = 0.02;
-constexpr double kSureExistence = 0.999999;
+constexpr double kSureExistence = 0.9999;
 // Standard deviations of the coarse gate; the chi-square gate decides.
 constexpr double kCoarseSigmas = 4.7;
 // Published tracks must share one place for so long before one of them goes, others for less.
@@ -119,9 +119,7 @@ void Tracker::Predict(Timestamp stamp) {
     hidden.filter.Predict(dt_s, settings_);
     hidden.filter.Show(settings_, track);
     track.existence *= survival;
-    const double sigma_m = LargestSigma(hidden.filter.position_covariance());
-    if (!track.state_O.mean.allFinite() || !track.state_O.covariance.allFinite() ||
-        !std::isfinite(sigma_m)) {
+    if (!track.state_O.mean.allFinite() || !track.state_O.covariance.allFinite()) {
       failures_.push_back(Reason::kTrackNumerics);
       hidden.is_dead = true;
       continue;
@@ -130,15 +128,27 @@ void Tracker::Predict(Timestamp stamp) {
     if (track.visibility != Visibility::kVisible && silent_s > config_.hidden_hold_s) {
       hidden.is_dead = true;
     }
-    if (silent_s > kCoastingSince_s && sigma_m > config_.max_position_sigma_m) {
-      hidden.is_dead = true;
-    }
+    if (silent_s > kCoastingSince_s && !IsWorthListing(i)) hidden.is_dead = true;
   }
   RemoveDead();
 }
 
-void Tracker::AskDetectability(const DetectabilityOf& detectability) {
+// Existence must outweigh the error that the cut-off metric would find.
+bool Tracker::IsWorthListing(std::size_t track) const {
+  const double c2 = config_.list_cutoff_m * config_.list_cutoff_m;
+  const double m = hidden_[track].filter.position_covariance().trace();
+  const double error = m > 0.0 ? -m * std::expm1(-c2 / m) : 0.0;
+  return tracks_[track].existence * 2.0 * (c2 - error) > c2;
+}
+
+void Tracker::AskDetectability(int sensor, const DetectabilityOf& detectability) {
+  Timestamp& last = last_look_[static_cast<std::size_t>(sensor) % last_look_.size()];
+  const double since_s = last == Timestamp{} ? 1e9 : ToSeconds(now_ - last);
+  last = now_;
+  const double share =
+      config_.miss_memory_s > 0.0 ? std::clamp(since_s / config_.miss_memory_s, 0.0, 1.0) : 1.0;
   detection_.resize(tracks_.size());
+  missing_.resize(tracks_.size());
   missed_.resize(tracks_.size());
   seen_.clear();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -146,7 +156,9 @@ void Tracker::AskDetectability(const DetectabilityOf& detectability) {
     detection_[i] = std::clamp(answer.probability, 0.0, 0.999);
     tracks_[i].visibility = answer.visibility;
     seen_.push_back(answer);
-    missed_[i] = 1.0 - tracks_[i].existence * detection_[i];
+    missing_[i] =
+        tracks_[i].is_confirmed ? 1.0 - std::pow(1.0 - detection_[i], share) : detection_[i];
+    missed_[i] = 1.0 - tracks_[i].existence * missing_[i];
   }
 }
 
@@ -181,7 +193,8 @@ void Tracker::GatePair(std::size_t track, std::size_t measurement, const Look& l
   const double existence = tracks_[track].existence;
   const double counted = std::max(existence, kAssignmentExistence);
   // Cost against leaving the track alone and calling the measurement clutter or a newcomer.
-  const double cost = -(log_ratio + std::log(counted) - std::log(1.0 - counted * detection));
+  const double cost = -(log_ratio + std::log(counted) -
+                        std::log(1.0 - counted * std::max(missing_[track], kMinDetection)));
   const int row = static_cast<int>(track);
   const int column = static_cast<int>(measurement);
   costs_.push_back({row, column, cost});
@@ -195,7 +208,7 @@ void Tracker::Associate(std::size_t measurements) {
   marginals_.Compute(pairs_, missed_, assigned_, measurements);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const double seen = marginals_.detected()[i];
-    const double unseen = ExistenceAfterMiss(tracks_[i].existence, detection_[i]);
+    const double unseen = ExistenceAfterMiss(tracks_[i].existence, missing_[i]);
     tracks_[i].existence = std::min(seen + (1.0 - seen) * unseen, kSureExistence);
   }
 }
@@ -238,7 +251,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
   costs_.clear();
   pairs_.clear();
   PrepareRadar(look, measurements);
-  AskDetectability(detectability);
+  AskDetectability(radar, detectability);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const double reach_m = kCoarseSigmas * LargestSigma(hidden_[i].filter.position_covariance()) +
                            0.7 * tracks_[i].extent.length_m;
@@ -316,7 +329,7 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
   costs_.clear();
   pairs_.clear();
   PrepareCamera(look, measurements);
-  AskDetectability(detectability);
+  AskDetectability(camera + 8, detectability);
   const double axis = ego.X_OB.yaw_rad() + look.camera.yaw_rad;
   const Eigen::Vector2d origin_O = look.origin_O();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -360,7 +373,9 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
     const auto fix = FixOf(look, z);
     if (!fix || (fix->p_O - origin_O).norm() > config_.camera_birth_range_m) continue;
     bool is_covered = false;
-    for (std::size_t i = 0; i < known && !is_covered; ++i) is_covered = Covers(i, look, z);
+    for (std::size_t i = 0; i < known && !is_covered; ++i) {
+      is_covered = assigned_[i] < 0 && Covers(i, look, z);
+    }
     if (is_covered) continue;
     Start(TrackFilter::FromCamera(look, z, *fix), camera + 8, j,
           candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]));
@@ -427,7 +442,8 @@ void Tracker::Conclude(double dt_s) {
         hits >= config_.confirm_hits && track.camera_hits + hidden.moving_hits >= 2 &&
         LargestSigma(hidden.filter.position_covariance()) <= config_.max_position_sigma_m) {
       track.is_confirmed = true;
-    } else if (track.is_confirmed && track.existence < config_.keep_existence) {
+    } else if (track.is_confirmed &&
+               (track.existence < config_.keep_existence || !IsWorthListing(i))) {
       track.is_confirmed = false;
     }
     const bool was_believed = hits >= config_.confirm_hits;

@@ -30,8 +30,10 @@ struct TrackerConfig {
   double delete_existence = 0.01;      ///< Once published, dropped below this.
   int confirm_hits = 3;                ///< Looks that saw it, all sensors, before it is published.
   double survival_per_s = 0.999;       ///< Probability to still be there after one second.
-  double hidden_hold_s = 3.0;          ///< A hidden track is kept at most this long without a hit.
-  double max_position_sigma_m = 5.0;   ///< A track that coasts and is less certain is dropped.
+  double hidden_hold_s = 8.0;          ///< A hidden track is kept at most this long without a hit.
+  double max_position_sigma_m = 5.0;   ///< A less certain track is not published anew.
+  double list_cutoff_m = 10.0;         ///< c of the rule that ends a coasting track, see Tracker.
+  double miss_memory_s = 0.15;         ///< Misses of a published track closer than this are one.
   double camera_birth_range_m = 60.0;  ///< A box alone starts a track only within this.
   int max_tracks = 512;
 
@@ -48,6 +50,8 @@ struct TrackerConfig {
     a.Field("survival_per_s", survival_per_s, {.above = 0.0, .at_most = 1.0});
     a.Field("hidden_hold_s", hidden_hold_s, {.above = 0.0, .at_most = 30.0});
     a.Field("max_position_sigma_m", max_position_sigma_m, {.above = 0.1, .at_most = 100.0});
+    a.Field("list_cutoff_m", list_cutoff_m, {.above = 0.1, .at_most = 100.0});
+    a.Field("miss_memory_s", miss_memory_s, {.at_least = 0.0, .at_most = 5.0});
     a.Field("camera_birth_range_m", camera_birth_range_m, {.at_least = 0.0, .at_most = 200.0});
     a.Field("max_tracks", max_tracks, {.at_least = 1, .at_most = 4096});
   }
@@ -73,6 +77,16 @@ using DetectabilityOf = std::function<Detectability(const LocalTrack&)>;
 /// standing
 ///   cluster starts none; it keeps alive what a camera named or what was seen moving. Nothing is
 ///   published that was not seen twice by a camera or in motion.
+/// - A published track is one that is worth it: with D the expected squared error cut off at c^2,
+///   listing a vehicle of existence r costs less than leaving it out where
+///
+///       r > c^2 / (2 (c^2 - D)),   D = m (1 - exp(-c^2 / m)),  m = trace of the position
+///       covariance
+///
+///   (the expected squared GOSPA, p = 2). A coasting track of which that is no longer true ends.
+/// - Misses of a published track follow from each other: what the visibility did not know of hides
+///   it in the next look too. A look after dt counts as min(1, dt / miss_memory_s) of one, which
+///   also makes a track's end a matter of time and not of the sensors' rates.
 /// - A further cluster inside a tracked vehicle's footprint with its Doppler belongs to that
 /// vehicle:
 ///   it joins the measurement and starts nothing.
@@ -122,7 +136,8 @@ class Tracker {
   void GatePair(std::size_t track, std::size_t measurement, const Look& look, const Measurement& z);
   void PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void PrepareCamera(const CameraLook& look, std::span<const CameraMeasurement> measurements);
-  void AskDetectability(const DetectabilityOf& detectability);
+  void AskDetectability(int sensor, const DetectabilityOf& detectability);
+  [[nodiscard]] bool IsWorthListing(std::size_t track) const;
   /// The measurement as one of this track, with what visibility knows about its edges.
   [[nodiscard]] RadarMeasurement Given(std::size_t track, const RadarMeasurement& z) const;
   [[nodiscard]] CameraMeasurement Given(std::size_t track, const CameraMeasurement& z) const;
@@ -145,6 +160,7 @@ class Tracker {
   std::array<double, Linearized::kMaxRows + 1> gate_{};
   Timestamp now_{};
   double since_update_s_ = 0.0;
+  std::array<Timestamp, 16> last_look_{};  // By sensor as in PackId.
   std::vector<LocalTrack> tracks_;
   std::vector<Hidden> hidden_;
   std::vector<SensorUpdate> updates_;
@@ -152,7 +168,7 @@ class Tracker {
 
   // Scratch of one update, kept for its memory.
   Candidates candidates_;
-  std::vector<double> detection_, missed_, lone_;
+  std::vector<double> detection_, missing_, missed_, lone_;
   std::vector<Detectability> seen_;
   std::vector<SparsePair> costs_;
   std::vector<GatedPair> pairs_;
