@@ -50,6 +50,18 @@ struct CameraMeasurement {
   double score = 0.0;
 };
 
+/// The whole motion of one vehicle as a box detector on lidar, a sensor that tracks by itself, or a
+/// simulation reports it, in O and over ground: the first rows of the kinematic state (StateIndex).
+struct PoseMeasurement {
+  double x_m = 0.0;  ///< Of the footprint's centre.
+  double y_m = 0.0;
+  double yaw_rad = 0.0;    ///< Direction; any multiple of 2 pi may be added.
+  double speed_mps = 0.0;  ///< Along it, negative in reverse.
+  double yaw_rate_radps = 0.0;
+  /// Of [x, y, yaw, speed, yaw rate]; symmetric and positive definite.
+  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Identity();
+};
+
 using SensorMeasurement = std::variant<RadarMeasurement, CameraMeasurement>;
 
 /// A measurement that a LOCAL track was given, kept so that its PRIORITY filter can use it too.

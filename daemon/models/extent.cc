@@ -103,6 +103,25 @@ std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
                                                   state.covariance);
 }
 
+bool UpdateExtended(const LinearizedPose& measurement, ExtendedState& state) {
+  Eigen::Matrix<double, LinearizedPose::kRows, ExtendedState::kSize> H;
+  H.setIdentity();
+  if (!JosephUpdate<ExtendedState::kSize>(measurement.y, H, measurement.R, state.mean,
+                                          state.covariance)) {
+    return false;
+  }
+  Clamp(state);
+  return true;
+}
+
+std::optional<Likelihood> EvaluateExtended(const LinearizedPose& measurement,
+                                           const ExtendedState& state) {
+  const LinearizedPose::Covariance S =
+      state.covariance.topLeftCorner<LinearizedPose::kRows, LinearizedPose::kRows>() +
+      measurement.R;
+  return LikelihoodOf(measurement.y, S);
+}
+
 void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state) {
   const Extent old_extent = ClassExtent(from);
   const Extent new_extent = ClassExtent(to);

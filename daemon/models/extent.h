@@ -48,6 +48,10 @@ bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool le
                     unsigned frozen = 0);
 std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
                                            const ExtendedState& state);
+/// The same for a whole pose, which has nothing to do with the size but by correlation.
+bool UpdateExtended(const LinearizedPose& measurement, ExtendedState& state);
+std::optional<Likelihood> EvaluateExtended(const LinearizedPose& measurement,
+                                           const ExtendedState& state);
 
 /// Replaces what was assumed about the size: takes the typical size of `from` out of the estimate
 /// (information filter), puts that of `to` in, and moves the vehicle as the joint covariance says:

@@ -23,11 +23,14 @@ template <int N, class Vector, class Jacobian, class Covariance>
 bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
                   Eigen::Matrix<double, N, 1>& mean, Eigen::Matrix<double, N, N>& P,
                   int considered = 0, unsigned frozen = 0) {
-  using Gain = Eigen::Matrix<double, N, Eigen::Dynamic, 0, N, Linearized::kMaxRows>;
+  using Gain =
+      Eigen::Matrix<double, N, Vector::RowsAtCompileTime, 0, N, Vector::MaxRowsAtCompileTime>;
+  using Innovation = Eigen::Matrix<double, Vector::RowsAtCompileTime, Vector::RowsAtCompileTime, 0,
+                                   Vector::MaxRowsAtCompileTime, Vector::MaxRowsAtCompileTime>;
   const Gain PHt = P * H.transpose();
-  Linearized::Covariance S = H * PHt + R;
+  Innovation S = H * PHt + R;
   S = (0.5 * (S + S.transpose())).eval();
-  const Eigen::LLT<Linearized::Covariance> llt(S);
+  const Eigen::LLT<Innovation> llt(S);
   if (llt.info() != Eigen::Success) return false;
   Gain K = llt.solve(PHt.transpose()).transpose();
   K.bottomRows(considered).setZero();
@@ -44,16 +47,13 @@ bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
   return true;
 }
 
-/// Likelihood of an innovation y whose covariance is H P H' + R.
-/// @return nullopt when that covariance is not positive definite or y is not finite.
-template <int N, class Vector, class Jacobian, class Covariance>
-std::optional<Likelihood> EvaluateInnovation(const Vector& y, const Jacobian& H,
-                                             const Covariance& R,
-                                             const Eigen::Matrix<double, N, N>& P) {
-  const Linearized::Covariance S = H * P * H.transpose() + R;
-  const Eigen::LLT<Linearized::Covariance> llt(S);
+/// Likelihood of an innovation y of covariance S; both of a size known to the compiler or bounded.
+/// @return nullopt when S is not positive definite or y is not finite.
+template <class Vector, class Covariance>
+std::optional<Likelihood> LikelihoodOf(const Vector& y, const Covariance& S) {
+  const Eigen::LLT<Covariance> llt(S);
   if (llt.info() != Eigen::Success) return std::nullopt;
-  const Linearized::Vector whitened = llt.matrixL().solve(Linearized::Vector(y));
+  const Vector whitened = llt.matrixL().solve(y);
   Likelihood result;
   result.rows = static_cast<int>(y.size());
   result.distance_squared = whitened.squaredNorm();
@@ -62,6 +62,15 @@ std::optional<Likelihood> EvaluateInnovation(const Vector& y, const Jacobian& H,
     return std::nullopt;
   }
   return result;
+}
+
+/// The same for an innovation whose covariance is H P H' + R.
+template <int N, class Vector, class Jacobian, class Covariance>
+std::optional<Likelihood> EvaluateInnovation(const Vector& y, const Jacobian& H,
+                                             const Covariance& R,
+                                             const Eigen::Matrix<double, N, N>& P) {
+  const Covariance S = H * P * H.transpose() + R;
+  return LikelihoodOf(y, S);
 }
 
 }  // namespace v2vouch

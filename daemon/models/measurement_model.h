@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "daemon/base/reason.h"
 #include "daemon/data/measurement.h"
 #include "daemon/data/track.h"
 #include "daemon/data/vehicle.h"
@@ -70,6 +71,24 @@ std::optional<Linearized> LinearizeCamera(const StateVector& x, const Extent& ex
 /// A position in O measured directly (lidar, simulation).
 Linearized LinearizePosition(const StateVector& x, const Eigen::Vector2d& p_O,
                              const Eigen::Matrix2d& noise);
+
+/// A whole pose measured directly. As many rows as PoseMeasurement has, known to the compiler:
+///
+///     h(x) = [x, y, yaw, speed, yaw rate],   H = [I 0],   y = z - h(x), yaw wrapped
+struct LinearizedPose {
+  static constexpr int kRows = 5;
+  using Vector = Eigen::Matrix<double, kRows, 1>;
+  using Covariance = Eigen::Matrix<double, kRows, kRows>;
+  Vector y;
+  Covariance R;
+};
+LinearizedPose LinearizePose(const StateVector& x, const PoseMeasurement& measurement);
+
+/// Why a pose cannot be used: kNotFinite; kOutOfRange where a value lies beyond kMaxPosition_m or
+/// kMaxSpeed_mps, or the covariance is not symmetric and positive definite. nullopt: usable.
+std::optional<Reason> FaultOf(const PoseMeasurement& measurement);
+inline constexpr double kMaxPosition_m = 1e6;
+inline constexpr double kMaxSpeed_mps = 150.0;
 
 /// Joseph-form EKF update. Covariance stays symmetric and positive semidefinite; yaw is wrapped.
 /// @return false when the innovation covariance is not positive definite or the result is not
