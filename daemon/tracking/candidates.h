@@ -3,11 +3,19 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace v2vouch {
+
+/// Standard deviation along the longest axis of a covariance ellipse.
+inline double LargestSigma(const Eigen::Matrix2d& P) {
+  const double mean = 0.5 * (P(0, 0) + P(1, 1));
+  const double half = 0.5 * (P(0, 0) - P(1, 1));
+  return std::sqrt(std::max(mean + std::sqrt(half * half + P(0, 1) * P(0, 1)), 0.0));
+}
 
 /// What association knows about one measurement before it meets a track.
 struct Candidate {

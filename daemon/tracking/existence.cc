@@ -9,6 +9,7 @@ namespace v2vouch {
 namespace {
 
 constexpr std::size_t kExact = 4;
+constexpr double kMaxBirth = 0.3;
 
 // Sums the weights of all matchings of one small cluster by depth-first search over its tracks.
 struct Enumeration {
@@ -46,6 +47,10 @@ struct Enumeration {
 double ExistenceAfterMiss(double existence, double detection_probability) {
   const double remaining = 1.0 - existence * detection_probability;
   return remaining > 0.0 ? existence * (1.0 - detection_probability) / remaining : 0.0;
+}
+
+double BirthExistence(double births, double clutter) {
+  return std::clamp(births / (births + clutter), kMinBirth, kMaxBirth);
 }
 
 int AssociationMarginals::Root(int node) {

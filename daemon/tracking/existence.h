@@ -11,6 +11,12 @@ namespace v2vouch {
 /// Existence after a look that did not see the vehicle: r (1 - p) / (1 - r p).
 double ExistenceAfterMiss(double existence, double detection_probability);
 
+/// Existence of a track that one measurement starts, where newcomers and clutter are to be expected
+/// with these densities. A new track is never nearly certain, and never so unlikely that it cannot
+/// be confirmed: it lies in [kMinBirth, 0.3].
+double BirthExistence(double births, double clutter);
+inline constexpr double kMinBirth = 1e-4;
+
 /// A track and a measurement that may belong together. `ratio` is the likelihood of the measurement
 /// under the track, times r p, over the density of clutter and births there.
 struct GatedPair {

@@ -26,15 +26,25 @@ class TrackFilter {
   static TrackFilter FromCamera(const CameraLook& look, const CameraMeasurement& measurement,
                                 const Fix& fix);
 
+  /// A vehicle at once.
+  static TrackFilter FromPose(const PoseMeasurement& measurement);
+
   void Predict(double dt_s, const FilterSettings& settings);
 
   /// The squared distance is that of the best component, the density that of the whole mixture.
   template <class Look, class Measurement>
   [[nodiscard]] std::optional<Likelihood> Evaluate(const Look& look, const Measurement& z,
                                                    const FilterSettings& settings) const;
+  [[nodiscard]] std::optional<Likelihood> Evaluate(const PoseMeasurement& measurement,
+                                                   const FilterSettings& settings) const;
   /// @return false on numerical failure; the track must be dropped.
   template <class Look, class Measurement>
   bool Update(const Look& look, const Measurement& z, const FilterSettings& settings);
+
+  /// A point, and a vehicle whose direction is in doubt, becomes the vehicle that the pose
+  /// describes: a reflection that may lie anywhere on it knows nothing of the centre that the pose
+  /// does not know better.
+  bool Update(const PoseMeasurement& measurement);
 
   /// Takes the class's typical size for what nobody measured yet.
   void SetClass(ObjectClass object_class);
@@ -48,6 +58,7 @@ class TrackFilter {
   void Show(const FilterSettings& settings, LocalTrack& track) const;
 
   [[nodiscard]] bool is_vehicle() const { return is_vehicle_; }
+  [[nodiscard]] bool knows_direction() const;  ///< Front and axis; whole poses need both.
   [[nodiscard]] Eigen::Vector2d seen_from_O() const { return seen_from_; }
   [[nodiscard]] Eigen::Vector2d position_O() const;
   [[nodiscard]] Eigen::Vector2d velocity_O() const;

@@ -21,9 +21,6 @@ constexpr double kStaticDopplerSpan_mps = 1.2;
 // Clutter of a camera: boxes anywhere in the picture, width and depression spread over these.
 constexpr double kBoxWidthSpan_rad = 0.3;
 constexpr double kDepressionSpan_rad = 0.2;
-// A new track is never nearly certain, and never so unlikely that it cannot be confirmed.
-constexpr double kMinBirth = 1e-4;
-constexpr double kMaxBirth = 0.3;
 // Unpublished tracks go below this.
 constexpr double kForget = 1e-5;
 // For the choice of an assignment a young track counts at least this much, so that its second look
@@ -47,12 +44,6 @@ constexpr double kPartAside_m = 1.5;
 constexpr double kPartSpeed_mps = 2.0;
 constexpr double kPartHold_s = 0.5;
 constexpr double kPartSigma_m = 1.5;
-
-double LargestSigma(const Eigen::Matrix2d& P) {
-  const double mean = 0.5 * (P(0, 0) + P(1, 1));
-  const double half = 0.5 * (P(0, 0) - P(1, 1));
-  return std::sqrt(std::max(mean + std::sqrt(half * half + P(0, 1) * P(0, 1)), 0.0));
-}
 
 bool IsFinite(const RadarMeasurement& z) {
   return std::isfinite(z.range_m) && std::isfinite(z.azimuth_rad) &&
@@ -87,10 +78,6 @@ double Cells(const CameraMeasurement& z, const CameraLook& look) {
   return cells;
 }
 double Cells(const RadarMeasurement&, const RadarLook&) { return 1.0; }
-
-double BirthExistence(double births, double clutter) {
-  return std::clamp(births / (births + clutter), kMinBirth, kMaxBirth);
-}
 
 }  // namespace
 
@@ -183,13 +170,18 @@ void Tracker::GatePair(std::size_t track, std::size_t measurement, const Look& l
   const Measurement z = Given(track, raw);
   const auto likelihood = hidden_[track].filter.Evaluate(look, z, settings_);
   if (!likelihood) return;
-  if (likelihood->distance_squared > gate_[static_cast<std::size_t>(likelihood->rows)]) return;
+  AddPair(track, measurement, *likelihood, std::log(Cells(raw, look) / Cells(z, look)));
+}
+
+// `log_cells`: how much larger the measurement's own space is than the one it was compared in.
+void Tracker::AddPair(std::size_t track, std::size_t measurement, const Likelihood& likelihood,
+                      double log_cells) {
+  if (likelihood.distance_squared > gate_[static_cast<std::size_t>(likelihood.rows)]) return;
   const double log_likelihood =
-      -0.5 * (likelihood->distance_squared + likelihood->log_det + likelihood->rows * kLog2Pi);
+      -0.5 * (likelihood.distance_squared + likelihood.log_det + likelihood.rows * kLog2Pi);
   const double detection = std::max(detection_[track], kMinDetection);
-  const double log_ratio = log_likelihood + std::log(detection) -
-                           candidates_[measurement].log_density -
-                           std::log(Cells(raw, look) / Cells(z, look));
+  const double log_ratio =
+      log_likelihood + std::log(detection) - candidates_[measurement].log_density - log_cells;
   const double existence = tracks_[track].existence;
   const double counted = std::max(existence, kAssignmentExistence);
   // Cost against leaving the track alone and calling the measurement clutter or a newcomer.
@@ -405,12 +397,15 @@ void Tracker::Vote(std::size_t track, const CameraMeasurement& z) {
 }
 
 void Tracker::Start(const TrackFilter& filter, int sensor, std::size_t index, double existence) {
-  const std::uint64_t id = PackId(now_, sensor, static_cast<int>(index));
   // An index beyond what an id can hold starts nothing: no scan has 256 vehicles.
   if (index > 255) return;
+  StartAs(PackId(now_, sensor, static_cast<int>(index)), filter, existence);
+}
+
+bool Tracker::StartAs(std::uint64_t id, const TrackFilter& filter, double existence) {
   if (tracks_.size() >= static_cast<std::size_t>(config_.max_tracks)) {
     failures_.push_back(Reason::kTrackTableFull);
-    return;
+    return false;
   }
   LocalTrack track;
   track.id = id;
@@ -423,6 +418,7 @@ void Tracker::Start(const TrackFilter& filter, int sensor, std::size_t index, do
   hidden.last_hit = now_;
   tracks_.push_back(track);
   hidden_.push_back(hidden);
+  return true;
 }
 
 // Shows the new states, confirms, ends and puts in order.
@@ -437,9 +433,10 @@ void Tracker::Conclude(double dt_s) {
       hidden.is_dead = true;
       continue;
     }
-    const int hits = track.radar_hits + track.camera_hits;
+    const int hits = track.radar_hits + track.camera_hits + hidden.pose_hits;
     if (!track.is_confirmed && track.existence >= config_.confirm_existence &&
-        hits >= config_.confirm_hits && track.camera_hits + hidden.moving_hits >= 2 &&
+        hits >= config_.confirm_hits &&
+        track.camera_hits + hidden.moving_hits + hidden.pose_hits >= 2 &&
         LargestSigma(hidden.filter.position_covariance()) <= config_.max_position_sigma_m) {
       track.is_confirmed = true;
     } else if (track.is_confirmed &&
@@ -499,6 +496,7 @@ void Tracker::DropDuplicates(double dt_s) {
         if (std::abs(old.state_O.mean[kX] - young.state_O.mean[kX]) > 0.5 * kLongest_m) break;
         if (hidden_[j].is_dead) continue;
         if (!IsSenior(old, young)) continue;
+        if (SeenAsTwo(j, i)) continue;
         const Eigen::Vector2d between = Eigen::Rotation2D<double>(-old.state_O.mean[kYaw]) *
                                         (young.state_O.mean.head<2>() - old.state_O.mean.head<2>());
         // A long vehicle's end is not known well: what nobody named may be a part of it.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/assignment/assignment.h"
+#include "daemon/base/angle.h"
 #include "daemon/base/reason.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/track.h"
@@ -69,6 +70,23 @@ struct Detectability {
 };
 using DetectabilityOf = std::function<Detectability(const LocalTrack&)>;
 
+/// What a sensor of whole poses (PoseMeasurement) is like.
+struct PoseSensor {
+  double period_s = 0.1;
+  /// False poses per frame and square metre, their speeds, directions and yaw rates spread evenly
+  /// over widths of so much.
+  double clutter_per_m2 = 1e-5;
+  double yaw_span_rad = 2.0 * kPi;
+  double speed_span_mps = 30.0;
+  double yaw_rate_span_radps = 0.5;
+};
+
+/// Which pose of the last frame a track was given.
+struct PoseUpdate {
+  std::uint64_t track_id = 0;
+  std::size_t pose = 0;
+};
+
 /// Multi-target tracker: Bernoulli existence per track, EKF in O (TrackFilter), association by
 /// log-likelihood ratio with exact assignment in gated clusters, existence from marginals, birth
 /// from what is left. Copyable: a copy is a checkpoint. Same inputs, same bits.
@@ -112,21 +130,33 @@ class Tracker {
                     std::span<const CameraMeasurement> measurements,
                     const DetectabilityOf& detectability);
 
+  /// One frame of poses, in O. The likelihood of clutter covers position, speed, yaw and yaw rate;
+  /// any pose that no track explains starts one. Poses that FaultOf refuses are skipped, and stand
+  /// in failures(). LOCAL only: updates() stays empty, pose_updates() tells who was given what.
+  void UpdatePoses(const PoseSensor& sensor, std::span<const PoseMeasurement> poses,
+                   const DetectabilityOf& detectability);
+  [[nodiscard]] std::span<const PoseUpdate> pose_updates() const { return pose_updates_; }
+
   /// All tracks, unconfirmed ones included, ordered by id.
   [[nodiscard]] std::span<const LocalTrack> tracks() const { return tracks_; }
   /// Which measurement each track was given by the last update; clusters of one vehicle as one.
   [[nodiscard]] std::span<const SensorUpdate> updates() const { return updates_; }
-  /// Numerical failures and overflow since the last Predict.
+  /// Numerical failures, overflow and refused poses since the last Predict.
   [[nodiscard]] std::span<const Reason> failures() const { return failures_; }
 
   /// Identity of a track: time, sensor (radars 0-7, cameras 8-15) and index of what started it.
   static std::uint64_t PackId(Timestamp stamp, int sensor, int index);
+  /// The same for a pose, whose index may reach 4095: the time is cut to 16 us to make room, the
+  /// sensor is 15 (a car's eighth camera).
+  static std::uint64_t PackPoseId(Timestamp stamp, int index);
 
  private:
   struct Hidden {  // What the rest of the program need not see of a track.
     TrackFilter filter;
     Timestamp last_hit{};
-    int moving_hits = 0;     // Radar clusters with a Doppler of their own.
+    int moving_hits = 0;  // Radar clusters with a Doppler of their own.
+    int pose_hits = 0;
+    Timestamp last_pose{};
     double overlap_s = 0.0;  // How long an older track has been in the same place.
     double part_s = 0.0;     // How long it could be the far end of a lorry or bus.
     std::array<double, 8> class_votes{};
@@ -134,6 +164,9 @@ class Tracker {
   };
   template <class Look, class Measurement>
   void GatePair(std::size_t track, std::size_t measurement, const Look& look, const Measurement& z);
+  void AddPair(std::size_t track, std::size_t measurement, const Likelihood& likelihood,
+               double log_cells);
+  void PreparePoses(const PoseSensor& sensor, std::span<const PoseMeasurement> poses);
   void PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void PrepareCamera(const CameraLook& look, std::span<const CameraMeasurement> measurements);
   void AskDetectability(int sensor, const DetectabilityOf& detectability);
@@ -145,10 +178,13 @@ class Tracker {
   void AbsorbClusters(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   bool Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,
             const Eigen::Vector2d& p_O) const;
+  bool SeenAsTwo(std::size_t a, std::size_t b) const;
   bool Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z) const;
   void Hit(std::size_t track);
   void Vote(std::size_t track, const CameraMeasurement& z);
   void Start(const TrackFilter& filter, int sensor, std::size_t index, double existence);
+  /// @return false when the table is full.
+  bool StartAs(std::uint64_t id, const TrackFilter& filter, double existence);
   void DropDuplicates(double dt_s);
   void JoinParts(double dt_s);
   void Conclude(double dt_s);
@@ -164,6 +200,7 @@ class Tracker {
   std::vector<LocalTrack> tracks_;
   std::vector<Hidden> hidden_;
   std::vector<SensorUpdate> updates_;
+  std::vector<PoseUpdate> pose_updates_;
   std::vector<Reason> failures_;
 
   // Scratch of one update, kept for its memory.

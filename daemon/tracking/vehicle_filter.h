@@ -41,6 +41,9 @@ class VehicleFilter {
   void StartStanding(const PointFilter& point, double likely_yaw_rad, const Extent& size,
                      const Eigen::Vector2d& seen_from_O, const FilterSettings& settings);
 
+  /// From a pose, which knows the direction; with this size.
+  void StartAt(const PoseMeasurement& pose, const Extent& size);
+
   void Predict(double dt_s, const FilterSettings& settings);
 
   /// Likelihood under the whole mixture: the squared distance is that of the best component.
@@ -54,6 +57,12 @@ class VehicleFilter {
   template <class Look, class Measurement>
   bool Update(const Look& look, const Measurement& z, ObjectClass object_class, bool is_young,
               const FilterSettings& settings);
+
+  /// A whole pose; to be asked only where knows_direction().
+  [[nodiscard]] std::optional<Likelihood> Evaluate(const PoseMeasurement& z) const;
+  bool Update(const PoseMeasurement& z);
+  /// One axis is left, and its front is known.
+  [[nodiscard]] bool knows_direction() const { return count_ == 1 && has_driven_; }
 
   void AssumeClass(ObjectClass from, ObjectClass to);
   void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O);
