@@ -57,7 +57,7 @@ void Tracker::UpdatePoses(const PoseSensor& sensor, std::span<const PoseMeasurem
   costs_.clear();
   pairs_.clear();
   PreparePoses(sensor, poses);
-  AskDetectability(detectability);
+  AskDetectability(kPoseSensor, detectability);
   const double sigmas = std::sqrt(gate_[LinearizedPose::kRows]);
   // A point is compared without the yaw rate and by velocity, where clutter fills a disc (or as
   // much of it as its directions do).
