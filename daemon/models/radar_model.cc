@@ -5,13 +5,12 @@
 #include "daemon/base/angle.h"
 #include "daemon/models/dual.h"
 #include "daemon/models/measurement_model.h"
+#include "daemon/models/reflections.h"
 
 namespace v2vouch {
 namespace {
 
 constexpr double kMinRange_m = 0.1;
-// Smoothing of the faces' weights and of their signs, as sine of the aspect.
-constexpr double kFaceBlur = 0.01;
 // Extents below this are a point.
 constexpr double kPoint_m = 1e-3;
 // Share of the reflections' spread that more reflections do not remove: scatterers sit where the
@@ -25,53 +24,22 @@ constexpr double kYawRateDoubt_radps = 0.15;
 
 bool IsPoint(double length_m, double width_m) { return length_m < kPoint_m || width_m < kPoint_m; }
 
-template <class T>
-T Positive(const T& a) {
-  using std::sqrt;
-  return 0.5 * (a + sqrt(a * a + T(kFaceBlur * kFaceBlur)));
-}
+using D = Dual<kStateSize + 2>;
 
-// What the sensor sees of the box: weights of the two faces turned to it and their signs.
-template <class T>
-struct Faces {
-  T front;       ///< Share of front or rear; the rest is the side.
-  T front_sign;  ///< +1 front, -1 rear.
-  T side_sign;   ///< +1 left, -1 right.
-};
-
-// `ax`, `ay`: unit vector from the vehicle to the sensor in vehicle axes.
-template <class T>
-Faces<T> VisibleFaces(const T& ax, const T& ay, const T& range, const T& length, const T& width) {
-  using std::sqrt;
-  const T abs_x = sqrt(ax * ax + T(kFaceBlur * kFaceBlur));
-  const T abs_y = sqrt(ay * ay + T(kFaceBlur * kFaceBlur));
-  // Angle of a face: length x cosine / distance, with the sensor's height over the face's plane and
-  // the distance to the face's middle.
-  const T deep = 0.5 * length / range;
-  const T wide = 0.5 * width / range;
-  const T front = Positive<T>(abs_x - deep) * width / (T(1.0) - 2.0 * (abs_x * deep) + deep * deep);
-  const T side = Positive<T>(abs_y - wide) * length / (T(1.0) - 2.0 * (abs_y * wide) + wide * wide);
-  return {front / (front + side), ax / abs_x, ay / abs_y};
-}
-
-// Mean of the reflections about the centre, vehicle axes.
-template <class T>
-void MeanReflection(const Faces<T>& faces, const T& length, const T& width, T& along, T& across) {
-  along = 0.5 * (faces.front * faces.front_sign * length);
-  across = 0.5 * ((T(1.0) - faces.front) * faces.side_sign * width);
-}
-
-// Covariance of one reflection about the mean, vehicle axes: uniform along each visible face.
-Eigen::Matrix2d ReflectionSpread(const Faces<double>& faces, double length_m, double width_m) {
-  const double front = faces.front;
-  const double side = 1.0 - front;
-  const Eigen::Vector2d on_front(0.5 * faces.front_sign * length_m, 0.0);
-  const Eigen::Vector2d on_side(0.0, 0.5 * faces.side_sign * width_m);
-  const Eigen::Vector2d between = on_front - on_side;
-  Eigen::Matrix2d spread = front * side * between * between.transpose();
-  spread(0, 0) += side * length_m * length_m / 12.0;
-  spread(1, 1) += front * width_m * width_m / 12.0;
-  return spread;
+// The edges of a radar's field of view, where the box straddles them, in the box's axes.
+void CutByView(const RadarConfig& radar, double sensor_yaw_rad, const D& yaw, const D& px,
+               const D& py, const Extent& extent, ReflectingBox<D>& box) {
+  if (radar.half_fov_rad >= 0.5 * kPi) return;
+  const double middle = std::atan2(py.value, px.value);
+  const double range = std::hypot(px.value, py.value);
+  const double half = std::atan2(0.5 * std::hypot(extent.length_m, extent.width_m), range);
+  const double off_axis = WrapAngle(middle - sensor_yaw_rad);
+  for (const double side : {1.0, -1.0}) {
+    if (side * off_axis + half < radar.half_fov_rad) continue;
+    // Inside of the left edge is to its right, and the other way round.
+    const D edge = D(sensor_yaw_rad + side * radar.half_fov_rad) - yaw;
+    box.Cut({side * sin(edge), -side * cos(edge)});
+  }
 }
 
 }  // namespace
@@ -86,16 +54,14 @@ Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, double yaw_rad,
   const double s = std::sin(yaw_rad);
   const double ax = (c * p_OS.x() + s * p_OS.y()) / range_m;
   const double ay = (c * p_OS.y() - s * p_OS.x()) / range_m;
-  Eigen::Vector2d offset;
-  MeanReflection(VisibleFaces(ax, ay, range_m, extent.length_m, extent.width_m), extent.length_m,
-                 extent.width_m, offset.x(), offset.y());
-  return offset;
+  const ReflectingBox<double> box(ax, ay, range_m, extent.length_m, extent.width_m);
+  const auto seen = box.Reflect();
+  return seen ? Eigen::Vector2d(seen->along, seen->across) : Eigen::Vector2d::Zero();
 }
 
 std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& extent,
                                          const EgoState& ego, const RadarConfig& radar,
                                          const RadarMeasurement& measurement) {
-  using D = Dual<kStateSize + 2>;
   const Pose<Odometry, Radar> X_OR =
       ego.X_OB * Pose<Body, Radar>(radar.x_m, radar.y_m, radar.yaw_rad);
   // Velocity of the antenna: rear axle plus yaw rate x lever arm.
@@ -116,20 +82,23 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
   D ox(0.0), oy(0.0);  // Offset of the reflections' mean from the centre, axes of O.
   Eigen::Matrix2d spread_O = Eigen::Matrix2d::Zero();
   const bool is_point = IsPoint(extent.length_m, extent.width_m);
+  bool is_cut = false;  // By an edge of the field of view, which the mean allows for.
   if (!is_point) {
     const D length = D::Variable(extent.length_m, kStateSize);
     const D width = D::Variable(extent.width_m, kStateSize + 1);
     const D ax = -(c * px + s * py) / distance;
     const D ay = (s * px - c * py) / distance;
-    const Faces<D> faces = VisibleFaces(ax, ay, distance, length, width);
-    D along, across;
-    MeanReflection(faces, length, width, along, across);
-    ox = c * along - s * across;
-    oy = s * along + c * across;
-    const Faces<double> seen{faces.front.value, faces.front_sign.value, faces.side_sign.value};
+    ReflectingBox<D> box(ax, ay, distance, length, width);
+    const auto whole = box.Reflect();
+    CutByView(radar, X_OR.yaw_rad(), yaw, px, py, extent, box);
+    const auto cut = box.Reflect();
+    is_cut = cut && cut->spread != whole->spread;
+    const Reflections<D>& seen = cut ? *cut : *whole;
+    ox = c * seen.along - s * seen.across;
+    oy = s * seen.along + c * seen.across;
     Eigen::Matrix2d R_OT;
     R_OT << c.value, -s.value, s.value, c.value;
-    spread_O = R_OT * ReflectionSpread(seen, extent.length_m, extent.width_m) * R_OT.transpose();
+    spread_O = R_OT * seen.spread * R_OT.transpose();
   }
   const D qx = px + ox;
   const D qy = py + oy;
@@ -179,7 +148,7 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
     R.diagonal().setZero();
     R += mean + kLastingSpread * spread;
     // With a part unseen the rest's mean is displaced.
-    const double unseen = std::clamp(1.0 - measurement.visible_share, 0.0, 1.0);
+    const double unseen = is_cut ? 0.0 : std::clamp(1.0 - measurement.visible_share, 0.0, 1.0);
     R += kUnseenLooks * unseen * unseen * spread;
     // The yaw rate is not known that well: off-centre points move by what is wrong with it.
     R(2, 2) += kYawRateDoubt_radps * kYawRateDoubt_radps * across.dot(spread_O * across) / n;

@@ -180,6 +180,45 @@ TEST(LinearizeRadar, ReflectionsDrawnOnVisibleFacesAverageToThePrediction) {
   }
 }
 
+// A car that leaves the field of view beside the ego: only its nose still reflects.
+TEST(LinearizeRadar, ReflectionsInsideTheFieldOfViewAverageToThePrediction) {
+  EgoState ego;
+  RadarConfig radar;
+  radar.x_m = 3.45;
+  radar.y_m = -0.75;
+  radar.yaw_rad = FromDegrees(-55.0);
+  radar.half_fov_rad = FromDegrees(70.0);
+  const Extent extent{4.5, 1.8, 0.0, 0.0};
+  for (const double x_m : {4.0, 2.5, 2.0, 1.5}) {
+    const StateVector state = (StateVector() << x_m, -3.8, 0.0, 26.0, 0.0, 0.0).finished();
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    int count = 0;
+    for (int k = 0; k < 4000; ++k) {  // Its left flank, the one face that is turned to the radar.
+      const Eigen::Vector2d q(x_m - 2.25 + 4.5 * (k + 0.5) / 4000, -3.8 + 0.9);
+      const Eigen::Vector2d d = q - Eigen::Vector2d(radar.x_m, radar.y_m);
+      if (std::abs(WrapAngle(std::atan2(d.y(), d.x()) - radar.yaw_rad)) > radar.half_fov_rad) {
+        continue;
+      }
+      mean += d;
+      ++count;
+    }
+    mean /= count;
+    RadarMeasurement z = AnyRadarMeasurement();
+    z.range_m = mean.norm();
+    z.azimuth_rad = WrapAngle(std::atan2(mean.y(), mean.x()) - radar.yaw_rad);
+    z.visible_share = count / 4000.0;
+    const auto model = LinearizeRadar(state, extent, ego, radar, z);
+    ASSERT_TRUE(model);
+    EXPECT_NEAR(model->y[0], 0.0, 0.1) << x_m;
+    EXPECT_NEAR(model->y[1] * z.range_m, 0.0, 0.1) << x_m;
+  }
+  ExpectJacobian(
+      [&](const StateVector& at, const Extent& size) {
+        return LinearizeRadar(at, size, ego, radar, AnyRadarMeasurement());
+      },
+      (StateVector() << 1.5, -3.8, 0.1, 26.0, 0.1, 0.5).finished(), extent, 1e-5);
+}
+
 TEST(LinearizeRadar, TargetAtTheAntennaIsRefused) {
   StateVector x = StateVector::Zero();
   x[kX] = 0.05;
