@@ -146,7 +146,8 @@ void PredictCtra(KinematicState& state, double dt_s, const MotionNoise& noise,
   StateMatrix F;
   for (int i = 0; i < std::max(steps, 1); ++i) {
     const StateVector next = CtraStep(state.mean, dt, noise, &F);
-    StateMatrix P = F * state.covariance * F.transpose();
+    const StateMatrix FP = F.lazyProduct(state.covariance);
+    StateMatrix P = FP.lazyProduct(F.transpose());
     AddNoise(state.mean, dt, noise, P);
     state.covariance = 0.5 * (P + P.transpose());
     state.mean = next;

@@ -27,8 +27,11 @@ bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
       Eigen::Matrix<double, N, Vector::RowsAtCompileTime, 0, N, Vector::MaxRowsAtCompileTime>;
   using Innovation = Eigen::Matrix<double, Vector::RowsAtCompileTime, Vector::RowsAtCompileTime, 0,
                                    Vector::MaxRowsAtCompileTime, Vector::MaxRowsAtCompileTime>;
-  const Gain PHt = P * H.transpose();
-  Innovation S = H * PHt + R;
+  // Coefficient by coefficient: for sizes like these, packing for the blocked product costs more
+  // than the product itself.
+  const Gain PHt = P.lazyProduct(H.transpose());
+  Innovation S = H.lazyProduct(PHt);
+  S += R;
   S = (0.5 * (S + S.transpose())).eval();
   const Eigen::LLT<Innovation> llt(S);
   if (llt.info() != Eigen::Success) return false;
@@ -37,10 +40,13 @@ bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
   for (int i = 0; i < N; ++i) {
     if ((frozen >> i & 1U) != 0) K.row(i).setZero();
   }
-  const Eigen::Matrix<double, N, 1> next = mean + K * y;
+  const Eigen::Matrix<double, N, 1> next = mean + K.lazyProduct(y);
   Eigen::Matrix<double, N, N> A = Eigen::Matrix<double, N, N>::Identity();
-  A.noalias() -= K * H;
-  const Eigen::Matrix<double, N, N> posterior = A * P * A.transpose() + K * R * K.transpose();
+  A.noalias() -= K.lazyProduct(H);
+  const Eigen::Matrix<double, N, N> AP = A.lazyProduct(P);
+  const Gain KR = K.lazyProduct(R);
+  Eigen::Matrix<double, N, N> posterior = AP.lazyProduct(A.transpose());
+  posterior += KR.lazyProduct(K.transpose());
   if (!next.allFinite() || !posterior.allFinite()) return false;
   mean = next;
   P = 0.5 * (posterior + posterior.transpose());
@@ -69,7 +75,9 @@ template <int N, class Vector, class Jacobian, class Covariance>
 std::optional<Likelihood> EvaluateInnovation(const Vector& y, const Jacobian& H,
                                              const Covariance& R,
                                              const Eigen::Matrix<double, N, N>& P) {
-  const Covariance S = H * P * H.transpose() + R;
+  const Jacobian HP = H.lazyProduct(P);
+  Covariance S = HP.lazyProduct(H.transpose());
+  S += R;
   return LikelihoodOf(y, S);
 }
 

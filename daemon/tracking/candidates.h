@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "daemon/tracking/place_index.h"
+
 namespace v2vouch {
 
 /// Standard deviation along the longest axis of a covariance ellipse.
@@ -26,8 +28,7 @@ struct Candidate {
   bool may_start = false;
 };
 
-/// The candidates of one look, searchable by place: sorted by x, so that a track meets only those
-/// in its strip.
+/// The candidates of one look, searchable by place, so that a track meets only those near it.
 class Candidates {
  public:
   void Clear() { all_.clear(); }
@@ -39,34 +40,27 @@ class Candidates {
   /// To be called after the last Add, before ForEachNear.
   void Sort() {
     widest_m_ = 0.0;
-    by_x_.clear();
+    places_.Clear();
     for (std::size_t j = 0; j < all_.size(); ++j) {
-      by_x_.push_back(j);
+      places_.Add(all_[j].p_O, j);
       widest_m_ = std::max(widest_m_, all_[j].reach_m);
     }
-    std::sort(by_x_.begin(), by_x_.end(), [this](std::size_t a, std::size_t b) {
-      const double xa = all_[a].p_O.x();
-      const double xb = all_[b].p_O.x();
-      return xa != xb ? xa < xb : a < b;
-    });
+    places_.Sort();
   }
 
   /// Calls visit(j) for every candidate whose own reach and `reach_m` together bridge the distance
   /// to `p_O`.
   template <class Visitor>
   void ForEachNear(const Eigen::Vector2d& p_O, double reach_m, Visitor&& visit) const {
-    const double strip_m = reach_m + widest_m_;
-    auto it = std::lower_bound(by_x_.begin(), by_x_.end(), p_O.x() - strip_m,
-                               [this](std::size_t j, double x) { return all_[j].p_O.x() < x; });
-    for (; it != by_x_.end() && all_[*it].p_O.x() <= p_O.x() + strip_m; ++it) {
-      const double reach = reach_m + all_[*it].reach_m;
-      if ((all_[*it].p_O - p_O).squaredNorm() <= reach * reach) visit(*it);
-    }
+    places_.ForEachNear(p_O, reach_m + widest_m_, [&](std::size_t j) {
+      const double reach = reach_m + all_[j].reach_m;
+      if ((all_[j].p_O - p_O).squaredNorm() <= reach * reach) visit(j);
+    });
   }
 
  private:
   std::vector<Candidate> all_;
-  std::vector<std::size_t> by_x_;
+  PlaceIndex places_;
   double widest_m_ = 0.0;
 };
 

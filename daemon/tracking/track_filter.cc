@@ -120,7 +120,7 @@ Eigen::Vector2d TrackFilter::velocity_O() const {
 }
 
 Eigen::Matrix2d TrackFilter::position_covariance() const {
-  return is_vehicle_ ? Eigen::Matrix2d(vehicle_.Show().covariance.topLeftCorner<2, 2>())
+  return is_vehicle_ ? vehicle_.position_covariance()
                      : Eigen::Matrix2d(point_.covariance().topLeftCorner<2, 2>());
 }
 

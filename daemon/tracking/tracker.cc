@@ -67,6 +67,10 @@ bool IsSenior(const LocalTrack& a, const LocalTrack& b) {
   return a.id < b.id;
 }
 
+bool IsLongVehicle(const LocalTrack& track) {
+  return track.object_class == ObjectClass::kTruck || track.object_class == ObjectClass::kBus;
+}
+
 // Size of the space that clutter of a kind spreads over. That of a box has as many dimensions as it
 // has usable edges; radar measurements differ in none.
 double Cells(const CameraMeasurement& z, const CameraLook& look) {
@@ -255,14 +259,11 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
   }
   Associate(measurements.size());
   AbsorbClusters(look, measurements);
+  JoinOwned(measurements);
 
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (assigned_[i] < 0) continue;
-    RadarMeasurement z = measurements[static_cast<std::size_t>(assigned_[i])];
-    for (std::size_t j = 0; j < measurements.size(); ++j) {
-      if (owner_[j] == static_cast<int>(i)) z = JoinClusters(z, measurements[j]);
-    }
-    z = Given(i, z);
+    const RadarMeasurement z = Given(i, joined_[i]);
     if (!hidden_[i].filter.Update(look, z, settings_)) {
       failures_.push_back(Reason::kTrackNumerics);
       hidden_[i].is_dead = true;
@@ -293,6 +294,20 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
     }
   }
   Conclude(since_update_s_);
+}
+
+// What each track was given, with the clusters that belong to it.
+void Tracker::JoinOwned(std::span<const RadarMeasurement> measurements) {
+  joined_.resize(tracks_.size());
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (assigned_[i] >= 0) joined_[i] = measurements[static_cast<std::size_t>(assigned_[i])];
+  }
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    if (owner_[j] < 0) continue;
+    const auto owner = static_cast<std::size_t>(owner_[j]);
+    if (owner >= tracks_.size() || assigned_[owner] < 0) continue;
+    joined_[owner] = JoinClusters(joined_[owner], measurements[j]);
+  }
 }
 
 void Tracker::PrepareCamera(const CameraLook& look,
@@ -330,14 +345,16 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
                            0.7 * tracks_[i].extent.length_m;
     const double range_m = line.norm();
     const double reach_rad = reach_m < range_m ? std::asin(reach_m / range_m) : kPi;
-    const double bearing = std::atan2(line.y(), line.x()) - axis;
+    const double bearing = WrapAngle(std::atan2(line.y(), line.x()) - axis);
     for (std::size_t j = 0; j < measurements.size(); ++j) {
       const CameraMeasurement& z = measurements[j];
       if (!candidates_[j].may_start) continue;
       const double middle = 0.5 * (z.azimuth_left_rad + z.azimuth_right_rad);
       const double half =
           0.5 * (z.azimuth_left_rad - z.azimuth_right_rad) + kCoarseSigmas * z.azimuth_sigma_rad;
-      if (std::abs(WrapAngle(middle - bearing)) > reach_rad + half) continue;
+      // Every track meets every box: no division here. Boxes lie ahead of the camera.
+      const double apart = std::abs(middle - bearing);
+      if (std::min(apart, 2.0 * kPi - apart) > reach_rad + half) continue;
       GatePair(i, j, look, z);
     }
   }
@@ -477,95 +494,100 @@ void Tracker::RemoveDead() {
 // Two vehicles cannot stand in one place: of two tracks with overlapping footprints and one
 // velocity the younger goes, at once while it is unpublished, after a while otherwise.
 void Tracker::DropDuplicates(double dt_s) {
-  by_x_.clear();
-  for (std::size_t i = 0; i < tracks_.size(); ++i) by_x_.push_back(static_cast<int>(i));
-  const auto x_of = [this](int i) { return tracks_[static_cast<std::size_t>(i)].state_O.mean[kX]; };
-  std::sort(by_x_.begin(), by_x_.end(),
-            [&](int a, int b) { return x_of(a) != x_of(b) ? x_of(a) < x_of(b) : a < b; });
   constexpr double kLongest_m = 25.0;
-  for (std::size_t a = 0; a < by_x_.size(); ++a) {
+  places_.Clear();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    places_.Add(tracks_[i].state_O.mean.head<2>(), i);
+  }
+  places_.Sort();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
     bool overlaps = false;
-    const auto i = static_cast<std::size_t>(by_x_[a]);
-    // Looks both ways from its own place for an older track.
-    for (const int direction : {-1, 1}) {
-      for (std::ptrdiff_t k = static_cast<std::ptrdiff_t>(a) + direction;
-           k >= 0 && k < static_cast<std::ptrdiff_t>(by_x_.size()); k += direction) {
-        const auto j = static_cast<std::size_t>(by_x_[static_cast<std::size_t>(k)]);
-        const LocalTrack& young = tracks_[i];
-        const LocalTrack& old = tracks_[j];
-        if (std::abs(old.state_O.mean[kX] - young.state_O.mean[kX]) > 0.5 * kLongest_m) break;
-        if (hidden_[j].is_dead) continue;
-        if (!IsSenior(old, young)) continue;
-        if (SeenAsTwo(j, i)) continue;
-        const Eigen::Vector2d between = Eigen::Rotation2D<double>(-old.state_O.mean[kYaw]) *
-                                        (young.state_O.mean.head<2>() - old.state_O.mean.head<2>());
-        // A long vehicle's end is not known well: what nobody named may be a part of it.
-        const double beyond =
-            young.object_class == ObjectClass::kUnknown
-                ? std::min(old.extent.length_sigma_m, kMaxEndDoubt_m) + 0.25 * young.extent.length_m
-                : 0.0;
-        // Centres nearer than half of what two vehicles need, or one's centre in the other's box.
-        const double half_length = std::max(0.25 * (old.extent.length_m + young.extent.length_m),
-                                            0.5 * old.extent.length_m - kInside_m + beyond);
-        const double half_width =
-            std::max(0.45 * (old.extent.width_m + young.extent.width_m), 0.5 * old.extent.width_m);
-        if (std::abs(between.x()) > half_length || std::abs(between.y()) > half_width) continue;
-        const double difference =
-            (hidden_[i].filter.velocity_O() - hidden_[j].filter.velocity_O()).norm();
-        const double doubt = hidden_[i].filter.is_vehicle() ? 0.0 : 8.0;
-        if (difference < 3.0 + doubt) overlaps = true;
-      }
-    }
+    places_.ForEachNear(tracks_[i].state_O.mean.head<2>(), 0.5 * kLongest_m,
+                        [&](std::size_t j) { overlaps = overlaps || IsWithin(i, j); });
     hidden_[i].overlap_s = overlaps ? hidden_[i].overlap_s + dt_s : 0.0;
     const double hold_s = tracks_[i].is_confirmed ? kDuplicateHold_s : kTentativeHold_s;
     if (overlaps && hidden_[i].overlap_s > hold_s) hidden_[i].is_dead = true;
   }
 }
 
+// Whether track i stands in the place of track j, its senior, and moves with it.
+bool Tracker::IsWithin(std::size_t i, std::size_t j) const {
+  const LocalTrack& young = tracks_[i];
+  const LocalTrack& old = tracks_[j];
+  if (i == j || hidden_[j].is_dead || !IsSenior(old, young) || SeenAsTwo(j, i)) return false;
+  const Eigen::Vector2d between = Eigen::Rotation2D<double>(-old.state_O.mean[kYaw]) *
+                                  (young.state_O.mean.head<2>() - old.state_O.mean.head<2>());
+  // A long vehicle's end is not known well: what nobody named may be a part of it.
+  const double beyond =
+      young.object_class == ObjectClass::kUnknown
+          ? std::min(old.extent.length_sigma_m, kMaxEndDoubt_m) + 0.25 * young.extent.length_m
+          : 0.0;
+  // Centres nearer than half of what two vehicles need, or one's centre in the other's box.
+  const double half_length = std::max(0.25 * (old.extent.length_m + young.extent.length_m),
+                                      0.5 * old.extent.length_m - kInside_m + beyond);
+  const double half_width =
+      std::max(0.45 * (old.extent.width_m + young.extent.width_m), 0.5 * old.extent.width_m);
+  if (std::abs(between.x()) > half_length || std::abs(between.y()) > half_width) return false;
+  const double difference =
+      (hidden_[i].filter.velocity_O() - hidden_[j].filter.velocity_O()).norm();
+  const double doubt = hidden_[i].filter.is_vehicle() ? 0.0 : 8.0;
+  return difference < 3.0 + doubt;
+}
+
 // A lorry's rear axle reflects ten metres behind its face and starts a track of its own. It moves
 // with the lorry, on its axis, and no picture shows it beside it.
 void Tracker::JoinParts(double dt_s) {
+  // Far enough for the longest vehicle, and for one that has just been lengthened.
+  constexpr double kReach_m = 2.0 * kLongestVehicle_m;
+  bool has_lorry = false;
+  for (const LocalTrack& track : tracks_) has_lorry = has_lorry || IsLongVehicle(track);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (hidden_[i].is_dead) continue;
-    const LocalTrack& part = tracks_[i];
     std::size_t whole = tracks_.size();
     double needed_m = 0.0;
-    for (std::size_t j = 0; j < tracks_.size(); ++j) {
-      const LocalTrack& lorry = tracks_[j];
-      if (i == j || hidden_[j].is_dead || !hidden_[j].filter.is_vehicle()) continue;
-      if (lorry.object_class != ObjectClass::kTruck && lorry.object_class != ObjectClass::kBus) {
-        continue;
-      }
-      if (!lorry.is_confirmed || !IsSenior(lorry, part)) continue;
-      if (part.last_camera && part.last_camera == lorry.last_camera) continue;
-      const Eigen::Rotation2D<double> into(-lorry.state_O.mean[kYaw]);
-      const Eigen::Vector2d between =
-          into * (part.state_O.mean.head<2>() - lorry.state_O.mean.head<2>());
-      if (std::abs(between.y()) > kPartAside_m) continue;
-      const Eigen::Vector2d sensor =
-          into * (hidden_[j].filter.seen_from_O() - lorry.state_O.mean.head<2>());
-      const double behind_m = sensor.x() > 0.0 ? -between.x() : between.x();
-      const double reach_m =
-          std::min(kLongestVehicle_m, lorry.extent.length_m + 2.0 * lorry.extent.length_sigma_m);
-      const double from_face_m = 0.5 * lorry.extent.length_m + behind_m;
-      if (from_face_m < -kInside_m || from_face_m > reach_m) continue;
-      const double speed = (hidden_[i].filter.velocity_O() - hidden_[j].filter.velocity_O()).norm();
-      const double doubt = hidden_[i].filter.is_vehicle() ? 0.0 : 8.0;
-      if (speed > kPartSpeed_mps + doubt) continue;
-      whole = j;
-      needed_m = from_face_m;
-      break;
+    if (has_lorry) {
+      places_.ForEachNear(tracks_[i].state_O.mean.head<2>(), kReach_m, [&](std::size_t j) {
+        if (j >= whole) return;  // The oldest counts.
+        const auto length_m = LengthWithPart(i, j);
+        if (!length_m) return;
+        whole = j;
+        needed_m = *length_m;
+      });
     }
     if (whole == tracks_.size()) {
       hidden_[i].part_s = 0.0;
       continue;
     }
     hidden_[i].part_s += dt_s;
-    if (hidden_[i].part_s < (part.is_confirmed ? kPartHold_s : kTentativeHold_s)) continue;
+    if (hidden_[i].part_s < (tracks_[i].is_confirmed ? kPartHold_s : kTentativeHold_s)) continue;
     hidden_[i].is_dead = true;
     hidden_[whole].filter.Lengthen(needed_m, kPartSigma_m);
     hidden_[whole].filter.Show(settings_, tracks_[whole]);
   }
+}
+
+// How long lorry j is if track i is its far end; nullopt where it cannot be.
+std::optional<double> Tracker::LengthWithPart(std::size_t i, std::size_t j) const {
+  const LocalTrack& part = tracks_[i];
+  const LocalTrack& lorry = tracks_[j];
+  if (i == j || hidden_[j].is_dead || !hidden_[j].filter.is_vehicle()) return std::nullopt;
+  if (!IsLongVehicle(lorry) || !lorry.is_confirmed || !IsSenior(lorry, part)) return std::nullopt;
+  if (part.last_camera && part.last_camera == lorry.last_camera) return std::nullopt;
+  const Eigen::Rotation2D<double> into(-lorry.state_O.mean[kYaw]);
+  const Eigen::Vector2d between =
+      into * (part.state_O.mean.head<2>() - lorry.state_O.mean.head<2>());
+  if (std::abs(between.y()) > kPartAside_m) return std::nullopt;
+  const Eigen::Vector2d sensor =
+      into * (hidden_[j].filter.seen_from_O() - lorry.state_O.mean.head<2>());
+  const double behind_m = sensor.x() > 0.0 ? -between.x() : between.x();
+  const double reach_m =
+      std::min(kLongestVehicle_m, lorry.extent.length_m + 2.0 * lorry.extent.length_sigma_m);
+  const double from_face_m = 0.5 * lorry.extent.length_m + behind_m;
+  if (from_face_m < -kInside_m || from_face_m > reach_m) return std::nullopt;
+  const double speed = (hidden_[i].filter.velocity_O() - hidden_[j].filter.velocity_O()).norm();
+  const double doubt = hidden_[i].filter.is_vehicle() ? 0.0 : 8.0;
+  if (speed > kPartSpeed_mps + doubt) return std::nullopt;
+  return from_face_m;
 }
 
 }  // namespace v2vouch

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -185,8 +186,11 @@ class Tracker {
   void Start(const TrackFilter& filter, int sensor, std::size_t index, double existence);
   /// @return false when the table is full.
   bool StartAs(std::uint64_t id, const TrackFilter& filter, double existence);
+  void JoinOwned(std::span<const RadarMeasurement> measurements);
   void DropDuplicates(double dt_s);
+  [[nodiscard]] bool IsWithin(std::size_t i, std::size_t j) const;
   void JoinParts(double dt_s);
+  [[nodiscard]] std::optional<double> LengthWithPart(std::size_t i, std::size_t j) const;
   void Conclude(double dt_s);
   void RemoveDead();
 
@@ -205,11 +209,13 @@ class Tracker {
 
   // Scratch of one update, kept for its memory.
   Candidates candidates_;
+  PlaceIndex places_;
+  std::vector<RadarMeasurement> joined_;
   std::vector<double> detection_, missing_, missed_, lone_;
   std::vector<Detectability> seen_;
   std::vector<SparsePair> costs_;
   std::vector<GatedPair> pairs_;
-  std::vector<int> by_x_, assigned_, owner_;
+  std::vector<int> assigned_, owner_;
   ClusteredAssignmentSolver solver_;
   AssociationMarginals marginals_;
 };

@@ -337,6 +337,11 @@ ExtendedState VehicleFilter::Show() const {
   return out;
 }
 
+Eigen::Matrix2d VehicleFilter::position_covariance() const {
+  if (count_ == 1) return best().covariance.topLeftCorner<2, 2>();
+  return Show().covariance.topLeftCorner<2, 2>();
+}
+
 template std::optional<Likelihood> VehicleFilter::Evaluate(const RadarLook&,
                                                            const RadarMeasurement&, ObjectClass,
                                                            const FilterSettings&) const;

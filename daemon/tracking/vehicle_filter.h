@@ -70,6 +70,7 @@ class VehicleFilter {
   /// The likeliest component; its position is the mixture's mean, its position covariance widened
   /// by the spread between the components.
   [[nodiscard]] ExtendedState Show() const;
+  [[nodiscard]] Eigen::Matrix2d position_covariance() const;  ///< As shown.
   /// The likeliest component.
   [[nodiscard]] const ExtendedState& best() const { return components_[0].state; }
   [[nodiscard]] std::size_t axes() const { return count_; }
