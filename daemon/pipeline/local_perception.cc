@@ -17,11 +17,20 @@ constexpr double kUnknownDetection = 0.3;
 // Radar and camera fade towards the end of their range from this share on.
 constexpr double kFullRangeShare = 0.7;
 constexpr double kSilentPeriods = 3.0;
+// What a sensor has measured so lately is in view, whatever the map of what may hide it says.
+constexpr double kJustSeen_s = 0.15;
 
 double RangeFade(double range_m, double max_range_m) {
   const double share = range_m / max_range_m;
   if (share <= kFullRangeShare) return 1.0;
   return std::clamp((1.0 - share) / (1.0 - kFullRangeShare), 0.0, 1.0);
+}
+
+bool IsJustSeen(const LocalTrack& track, Timestamp now) {
+  const auto is_fresh = [now](const std::optional<Timestamp>& hit) {
+    return hit && ToSeconds(now - *hit) <= kJustSeen_s;
+  };
+  return is_fresh(track.last_radar) || is_fresh(track.last_camera);
 }
 
 double DistanceToSensor(const EgoState& ego, double x_m, double y_m, const LocalTrack& track) {
@@ -118,6 +127,7 @@ Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoS
       result.visibility = Visibility::kOutOfView;
       break;
   }
+  if (IsJustSeen(track, ego.stamp)) result.visibility = Visibility::kVisible;
 
   const SensorView seen = answer.sensor;
   result.visible_share = seen.uncovered;
