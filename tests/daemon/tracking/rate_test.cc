@@ -107,5 +107,13 @@ TEST(Rates, FramesThatLookElsewhereChangeNothing) {
   }
 }
 
+TEST(Rates, AVisibleButMissingVehicleGoesAfterTheSameTimeAtAnyRate) {
+  double mean_s = 0.0;
+  for (const double rate_hz : kRates_hz) mean_s += Follow(rate_hz, 0).delete_s / 4.0;
+  for (const double rate_hz : kRates_hz) {
+    EXPECT_NEAR(Follow(rate_hz, 0).delete_s / mean_s, 1.0, 0.3) << rate_hz << " Hz";
+  }
+}
+
 }  // namespace
 }  // namespace v2vouch
