@@ -64,8 +64,6 @@ Confirmation JudgeConfirmation(const RunLog& log, const ScoringSettings& setting
                    [](const auto& a, const auto& b) { return a.received < b.received; });
   const auto take_look = [&](const SensorLook& look) {
     const std::string& channel = log.specs.sensors[look.sensor].channel;
-    const auto ego = truth.ego.At(look.stamp);
-    if (!ego) return;
     for (std::size_t o = 0; o < truth.objects.size(); ++o) {
       const TruthObject& object = truth.objects[o];
       Waiting& vehicle = waiting[o];
@@ -74,7 +72,6 @@ Confirmation JudgeConfirmation(const RunLog& log, const ScoringSettings& setting
       if (sample == nullptr) continue;
       const double probability = ProbabilityOf(*sample, channel);
       if (probability < kFairLook) continue;
-      if ((sample->motion.position() - ego->position()).norm() > settings.radius_m) continue;
       if (!vehicle.first_look) {
         vehicle.first_look = look.stamp;
         vehicle.figures.is_standing = std::abs(sample->motion.speed_mps) < kStanding_mps;

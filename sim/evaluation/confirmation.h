@@ -35,10 +35,11 @@ struct Confirmation {
 };
 
 /// Counts looks from the beginning of the log: a look is one frame of any own sensor that reached
-/// the log, taken while the vehicle is inside the disc and that sensor's detection probability, by
-/// TRUTH, is at least one half. Listed: matched to a track of a LOCAL list (GOSPA's assignment to
-/// all vehicles, as the scores use) whose centre is within half the vehicle's length and 2 m; looks
-/// count when received by then.
+/// the log, taken while that sensor's detection probability of the vehicle, by TRUTH, is at least
+/// one half, at any range (a count that began at the disc's edge would find most vehicles listed
+/// already). Listed: matched to a track of a LOCAL list (GOSPA's assignment to all vehicles, as the
+/// scores use) whose centre is within half the vehicle's length and 2 m; looks count when received
+/// by then.
 Confirmation JudgeConfirmation(const RunLog& log, const ScoringSettings& settings);
 
 }  // namespace v2vouch::evaluation
