@@ -40,7 +40,9 @@ void AddNoise(const StateVector& x, double dt, const MotionNoise& noise, StateMa
   const double mobility = Mobility(v);
   const double qj = noise.jerk_psd * (kRestingJerk + (1.0 - kRestingJerk) * mobility);
   const double qw = noise.yaw_accel_psd * mobility / (1.0 + ratio * ratio);
-  const double qs = noise.slip_psd * mobility / (1.0 + ratio * ratio);
+  // A car's centre moves at an angle of lever x curvature to its body; with bounded lateral
+  // acceleration curvature falls as 1 / speed^2.
+  const double qs = noise.slip_psd * mobility / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio));
 
   const Eigen::Vector2d along(std::cos(yaw), std::sin(yaw));
   const Eigen::Vector2d across(-along.y(), along.x());

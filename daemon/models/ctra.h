@@ -17,8 +17,10 @@ struct MotionNoise {
   double position_psd = 0.002;    ///< [m^2/s], both axes: drift of O, even of standing vehicles.
   double accel_decay_s = 2.0;     ///< Acceleration returns to 0 with this time constant (Singer).
   double yaw_rate_decay_s = 3.0;  ///< So does the yaw rate.
-  /// Above this speed yaw noise shrinks as 1 / speed^2: tyres bound the lateral acceleration
-  /// speed x yaw rate, not the yaw rate.
+  /// Above this speed the density of yaw noise shrinks as 1 / speed^2: tyres bound the lateral
+  /// acceleration speed x yaw rate, not the yaw rate. That of slip shrinks as 1 / speed^4: the
+  /// centre's direction differs from the body's by lever x curvature, and curvature is lateral
+  /// acceleration / speed^2.
   double lateral_speed_mps = 8.0;
 
   template <class Archive>

@@ -114,7 +114,7 @@ TEST(Tracker, VisibleButMissingFallsHiddenIsHeld) {
       EXPECT_EQ(tracker.tracks()[0].visibility, Visibility::kHidden);
       EXPECT_GT(tracker.tracks()[0].existence, 0.9);
       // Not for ever.
-      for (int step = 0; step < 30; ++step) {
+      for (int step = 0; step < 50; ++step) {
         scene.Advance(0.05);
         scene.Radar(tracker);
       }
