@@ -19,6 +19,7 @@ constexpr double kFullRangeShare = 0.7;
 constexpr double kSilentPeriods = 3.0;
 // What a sensor has measured so lately is in view, whatever the map of what may hide it says.
 constexpr double kJustSeen_s = 0.15;
+constexpr int kSureHits = 3;
 
 double RangeFade(double range_m, double max_range_m) {
   const double share = range_m / max_range_m;
@@ -75,6 +76,7 @@ std::optional<Reason> LocalPerception::OnRadarScan(const RadarScan& scan,
   tracker_.UpdateRadar(scan.radar, *ego, prepared.measurements, [&](const LocalTrack& track) {
     return DetectabilityOf(Kind::kRadar, scan.radar, *ego, track);
   });
+  SeeThrough();
   visibility_.AccumulateStatic(scan.stamp, *ego, prepared.measurements);
   last_radar_[radar] = scan.stamp;
   Finish(*ego, frame);
@@ -106,6 +108,17 @@ void LocalPerception::Look(const EgoState& ego) {
     if (track.is_confirmed) occluders_.push_back(FootprintOf(track));
   }
   visibility_.SetScene(ego, occluders_);
+}
+
+// Mirror images behind a wall must not make it transparent: a camera has seen the vehicle too.
+void LocalPerception::SeeThrough() {
+  const auto tracks = tracker_.tracks();
+  for (const SensorUpdate& update : tracker_.updates()) {
+    const auto* z = std::get_if<RadarMeasurement>(&update.measurement);
+    const auto track = std::ranges::lower_bound(tracks, update.track_id, {}, &LocalTrack::id);
+    if (z == nullptr || track == tracks.end() || track->id != update.track_id) continue;
+    if (track->is_confirmed && track->camera_hits >= kSureHits) visibility_.SeeThrough(*z);
+  }
 }
 
 Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoState& ego,

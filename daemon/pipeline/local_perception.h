@@ -51,6 +51,7 @@ class LocalPerception {
   enum class Kind { kRadar, kCamera };
 
   void Look(const EgoState& ego);
+  void SeeThrough();
   [[nodiscard]] Detectability DetectabilityOf(Kind kind, int sensor, const EgoState& ego,
                                               const LocalTrack& track) const;
   void Finish(const EgoState& ego, LocalFrame& frame);

@@ -89,4 +89,17 @@ void StaticRaster::Add(Timestamp stamp, const Eigen::Vector2d& p_O) {
   if (IsActive(*slot, stamp)) slot->is_structure = HasFarNeighbours(stamp, p_O);
 }
 
+void StaticRaster::SeeThrough(const Eigen::Vector2d& from_O, const Eigen::Vector2d& to_O) {
+  const Eigen::Vector2d line = to_O - from_O;
+  // Half a cell: no cell that is crossed near its middle is stepped over.
+  const int steps = static_cast<int>(line.norm() / (0.5 * cell_m_));
+  for (int i = 0; i <= steps; ++i) {
+    const Key key = KeyOf(from_O + line * (static_cast<double>(i) / std::max(steps, 1)));
+    Cell* const bucket = &cells_[BucketOf(key) * kSlots];
+    for (std::size_t k = 0; k < kSlots; ++k) {
+      if (bucket[k].hits > 0 && bucket[k].key == key) bucket[k].is_transparent = true;
+    }
+  }
+}
+
 }  // namespace v2vouch

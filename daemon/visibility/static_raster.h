@@ -23,6 +23,11 @@ class StaticRaster {
 
   void Add(Timestamp stamp, const Eigen::Vector2d& p_O);
 
+  /// Something behind was measured along the line from `from_O` to `to_O`: the cells that it
+  /// crosses (a rail, a hedge, stray returns) hide nothing and count as no one's neighbour until
+  /// they start again.
+  void SeeThrough(const Eigen::Vector2d& from_O, const Eigen::Vector2d& to_O);
+
   /// Calls visit(p_O of the cell's centre, is_structure) for every active cell, in a fixed order.
   /// `near_O`: a place within 30 km cells of all of them, e.g. the ego.
   template <class Visit>
@@ -54,6 +59,7 @@ class StaticRaster {
     Key key;
     std::uint8_t hits = 0;  // 0: empty slot.
     bool is_structure = false;
+    bool is_transparent = false;
   };
   static_assert(sizeof(Cell) == 16);
 
@@ -64,7 +70,7 @@ class StaticRaster {
     return cell.hits > 0 && now - cell.last_hit <= hold_;
   }
   [[nodiscard]] bool IsActive(const Cell& cell, Timestamp now) const {
-    return cell.hits >= min_hits_ && IsFresh(cell, now);
+    return cell.hits >= min_hits_ && !cell.is_transparent && IsFresh(cell, now);
   }
   [[nodiscard]] bool HasFarNeighbours(Timestamp now, const Eigen::Vector2d& p_O) const;
 

@@ -131,6 +131,17 @@ void VisibilityMap::AccumulateStatic(Timestamp stamp, const EgoState& ego,
   }
 }
 
+void VisibilityMap::SeeThrough(const RadarMeasurement& measurement) {
+  const Sensor& sensor = RadarAt(measurement.radar);
+  const double bearing_O = ego_.X_OB.yaw_rad() + sensor.yaw_rad + measurement.azimuth_rad;
+  const double reach_m = measurement.near_range_m - config_.margin_m - 2.0 * config_.static_cell_m;
+  // The bins know whether there is anything to clear away.
+  const Viewpoint& viewpoint = viewpoints_[sensor.viewpoint];
+  if (reach_m <= 0.0 || viewpoint.any_cm[BinOf(bearing_O)] >= 100.0 * reach_m) return;
+  const Eigen::Vector2d ray(std::cos(bearing_O), std::sin(bearing_O));
+  raster_.SeeThrough(sensor.origin_O, sensor.origin_O + reach_m * ray);
+}
+
 void VisibilityMap::SetScene(const EgoState& ego, std::span<const Occluder> occluders) {
   ego_ = ego;
   const Eigen::Matrix2d R_OB = ego.X_OB.rotation();

@@ -56,6 +56,7 @@ struct SensorView {
 ///   footprint's nearest point by more than margin + cell + sigma, so that a standing vehicle's
 ///   own returns do not hide it.
 /// - *possibly covered* by any other active static cell (a pole): half.
+/// Static cells through which a vehicle was measured cover nothing (a guard rail, a hedge).
 ///
 /// kOutOfView: less than 10 % of the footprint is inside the field of view, or its centre is out of
 /// range. kClear: at least 90 % of the 3-sigma span is inside the field of view and neither covered
@@ -72,6 +73,10 @@ class VisibilityMap {
   /// scene are that vehicle's own and are left out.
   void AccumulateStatic(Timestamp stamp, const EgoState& ego,
                         std::span<const RadarMeasurement> measurements);
+
+  /// A vehicle that is surely one was measured by a radar: what the raster has in front of it does
+  /// not hide. Place as of SetScene.
+  void SeeThrough(const RadarMeasurement& measurement);
 
   /// Sets the scene for queries: where the ego is, and the tracked boxes.
   void SetScene(const EgoState& ego, std::span<const Occluder> occluders);

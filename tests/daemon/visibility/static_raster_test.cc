@@ -89,5 +89,28 @@ TEST(StaticRaster, OverflowDropsTheOldestAndKeepsTheNewest) {
   EXPECT_EQ(newest, 100);
 }
 
+// A rail that a vehicle was measured through hides nothing there any more, and the rest of it
+// keeps what does not depend on those cells.
+TEST(StaticRaster, WhatWasSeenThroughIsNoLongerActive) {
+  StaticRaster raster(1.0, 2.0, 3);
+  const auto fill = [&](double from_s) {
+    for (int scan = 0; scan < 3; ++scan) {
+      for (int x = 10; x < 30; ++x) raster.Add(At(from_s + 0.05 * scan), {x + 0.5, 5.5});
+    }
+  };
+  fill(0.0);
+  ASSERT_EQ(ActiveCells(raster, 0.2).size(), 20U);
+  raster.SeeThrough({0.0, 0.0}, {40.0, 11.0});  // Crosses y = 5..6 at x = 18.2..21.8.
+  const auto left = ActiveCells(raster, 0.2);
+  EXPECT_EQ(left.size(), 16U);
+  for (const Active& cell : left) {
+    EXPECT_TRUE(cell.p_O.x() < 18.0 || cell.p_O.x() > 22.0) << cell.p_O.x();
+  }
+  fill(0.3);  // Further hits do not make it opaque again ...
+  EXPECT_EQ(ActiveCells(raster, 0.5).size(), 16U);
+  fill(3.0);  // ... but a new beginning does.
+  EXPECT_EQ(ActiveCells(raster, 3.2).size(), 20U);
+}
+
 }  // namespace
 }  // namespace v2vouch
