@@ -178,12 +178,11 @@ void PriorityPerception::UseClaim(Link& link, PriorityVehicle& vehicle,
                                  fit.position_nis, config.filter.position_gate},
                                 MayAccuse());
   }
-  const double elapsed_s = ToSeconds(here.stamp - vehicle.last_support);
   const Eigen::Vector2d p_O = vehicle.filter.mean().head<2>();
-  if (!IsReachable(vehicle.coast, elapsed_s, p_O, config.bridge)) {
+  if (!vehicle.CanReach(p_O, here.stamp, config.bridge)) {
     link.trust.OnFinding(here.stamp,
                          {"out_of_reach", Verdict::kWithdraw, "distance_m",
-                          (p_O - vehicle.coast.mean.head<2>()).norm(), 0.0},
+                          (p_O - vehicle.coast.state().mean.head<2>()).norm(), 0.0},
                          MayAccuse());
   }
 }
@@ -224,8 +223,8 @@ void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
       .filter =
           PriorityFilter(track.state_O, sensed_stamp_, evidence.bias(), evidence.bias_covariance(),
                          std::sqrt(alignment_.covariance()(2, 2)), config.filter),
-      .coast = track.state_O,
-      .coast_stamp = sensed_stamp_,
+      .coast = SensorCoast(track.state_O, sensed_stamp_),
+      .clear_coast = SensorCoast(track.state_O, sensed_stamp_),
       .last_support = last_hit,
       .co_observed_s = evidence.span_s(),
       .last_v2v = here.stamp,

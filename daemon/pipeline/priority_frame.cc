@@ -48,6 +48,14 @@ Occluder FootprintOfVehicle(const PriorityVehicle& vehicle) {
           .position_sigma_m = vehicle.filter.position_sigma_m()};
 }
 
+bool IsInFullView(const SensorMeasurement& measurement, const BridgeConfig& config) {
+  if (const auto* radar = std::get_if<RadarMeasurement>(&measurement)) {
+    return radar->visible_share >= config.clear_share;
+  }
+  const auto& camera = std::get<CameraMeasurement>(measurement);
+  return !camera.left_is_cut && !camera.right_is_cut;
+}
+
 Visibility SeenAs(View view) {
   switch (view) {
     case View::kOccluded:
@@ -135,6 +143,7 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
   const LocalTrack& track = sensed.track;
   vehicle.extent = track.extent;
   const Extent extent = track.ModelExtent();
+  bool is_clear = false;
   for (const SensorUpdate& update : frame.updates) {
     if (update.track_id != track.id) continue;
     const StateVector x = vehicle.filter.kinematics().mean;
@@ -149,6 +158,7 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
                                *camera);
     }
     if (linear) vehicle.filter.Update(*linear);
+    is_clear = is_clear || IsInFullView(update.measurement, settings_->priority.bridge);
   }
   vehicle.last_radar = track.last_radar;
   vehicle.last_camera = track.last_camera;
@@ -158,7 +168,8 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
   if (!vehicle.is_supported) return;
   vehicle.existence = track.existence;
   vehicle.last_support = frame.stamp;
-  vehicle.coast = track.state_O;
+  vehicle.coast = SensorCoast(track.state_O, frame.stamp);
+  if (is_clear) vehicle.clear_coast = vehicle.coast;
   vehicle.empty.OnHit();
   // V2V never moves a vehicle that the sensors see: where the two have come apart, LOCAL is right.
   const Eigen::Vector2d apart = vehicle.filter.mean().head<2>() - track.state_O.mean.head<2>();
@@ -171,7 +182,6 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
 void PriorityPerception::LookForReturn(PriorityVehicle& vehicle, Timestamp stamp) {
   const BridgeConfig& config = settings_->priority.bridge;
   const KinematicState here = vehicle.filter.kinematics();
-  const double elapsed_s = ToSeconds(stamp - vehicle.last_support);
   const Sensed* best = nullptr;
   double best_distance = kReturnGate;
   for (const Sensed& sensed : sensed_) {
@@ -182,7 +192,7 @@ void PriorityPerception::LookForReturn(PriorityVehicle& vehicle, Timestamp stamp
       continue;
     }
     const Eigen::Vector2d p_O = track.state_O.mean.head<2>();
-    if (!IsReachable(vehicle.coast, elapsed_s, p_O, config)) continue;
+    if (!vehicle.CanReach(p_O, stamp, config)) continue;
     const double speed = std::abs(here.mean[kSpeed]) - std::abs(track.state_O.mean[kSpeed]);
     const double speed_sigma = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
     if (std::abs(speed) > kReturnSpeed_mps + 2.0 * speed_sigma) continue;
@@ -207,7 +217,7 @@ void PriorityPerception::LookForReturn(PriorityVehicle& vehicle, Timestamp stamp
   vehicle.is_supported = true;
   vehicle.visibility = Visibility::kVisible;
   vehicle.last_support = stamp;
-  vehicle.coast = best->track.state_O;
+  vehicle.coast = vehicle.clear_coast = SensorCoast(best->track.state_O, stamp);
   vehicle.regaining_id = 0;
   pairs_.SetIncumbent(vehicle.sender, best->track.id);
 }
@@ -220,7 +230,8 @@ std::optional<Finding> PriorityPerception::Contradiction(const PriorityVehicle& 
   if (vehicle.regaining_id != 0 && ToSeconds(stamp - vehicle.last_regain) <= kPatience_s) {
     return std::nullopt;
   }
-  if (PositionSigma(vehicle.coast) > kUsefulCoast_m) return std::nullopt;
+  const KinematicState& coast = vehicle.coast.state();
+  if (PositionSigma(coast) > kUsefulCoast_m) return std::nullopt;
   const KinematicState here = vehicle.filter.kinematics();
   for (const Sensed& sensed : sensed_) {
     const LocalTrack& track = sensed.track;
@@ -233,13 +244,10 @@ std::optional<Finding> PriorityPerception::Contradiction(const PriorityVehicle& 
     const Eigen::Vector2d p_O = track.state_O.mean.head<2>();
     const double apart_m = (p_O - here.mean.head<2>()).norm();
     if (apart_m < config.contradiction_m + 3.0 * vehicle.filter.position_sigma_m()) continue;
-    const Eigen::Matrix2d S =
-        vehicle.coast.covariance.topLeftCorner<2, 2>() + P.topLeftCorner<2, 2>();
-    if (GateDistance(p_O - vehicle.coast.mean.head<2>(), S) > kCoastGate) continue;
-    if (std::abs(track.state_O.mean[kSpeed] - vehicle.coast.mean[kSpeed]) > kSameSpeed_mps)
-      continue;
-    if (std::abs(AngleDifference(track.state_O.mean[kYaw], vehicle.coast.mean[kYaw])) >
-        kSameYaw_rad) {
+    const Eigen::Matrix2d S = coast.covariance.topLeftCorner<2, 2>() + P.topLeftCorner<2, 2>();
+    if (GateDistance(p_O - coast.mean.head<2>(), S) > kCoastGate) continue;
+    if (std::abs(track.state_O.mean[kSpeed] - coast.mean[kSpeed]) > kSameSpeed_mps) continue;
+    if (std::abs(AngleDifference(track.state_O.mean[kYaw], coast.mean[kYaw])) > kSameYaw_rad) {
       continue;
     }
     const bool is_somebody_else = std::ranges::any_of(pairs_.pairs(), [&](const auto& pair) {

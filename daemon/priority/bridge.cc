@@ -5,21 +5,43 @@
 #include <cmath>
 
 namespace v2vouch {
+namespace {
+
+constexpr double kSigmas = 2.0;
+
+}  // namespace
 
 double BridgeBudget_s(double co_observed_s, const BridgeConfig& config) {
   return std::min(config.most_s, std::max(config.least_s, config.base_s + co_observed_s));
 }
 
-bool IsReachable(const KinematicState& coast, double elapsed_s, const Eigen::Vector2d& p_O,
-                 const BridgeConfig& config) {
-  const Eigen::Vector2d d = p_O - coast.mean.head<2>();
-  const double c = std::cos(coast.mean[kYaw]);
-  const double s = std::sin(coast.mean[kYaw]);
+SensorCoast::SensorCoast(const KinematicState& seen, Timestamp stamp)
+    : state_(seen),
+      stamp_(stamp),
+      taken_(stamp),
+      yaw_sigma_rad_(std::sqrt(std::max(0.0, seen.covariance(kYaw, kYaw)))),
+      speed_sigma_mps_(std::sqrt(std::max(0.0, seen.covariance(kSpeed, kSpeed)))) {}
+
+void SensorCoast::PredictTo(Timestamp stamp, const MotionNoise& motion) {
+  const double dt_s = ToSeconds(stamp - stamp_);
+  if (!(dt_s > 0.0)) return;
+  PredictCtra(state_, dt_s, motion);
+  stamp_ = stamp;
+}
+
+bool SensorCoast::Reaches(const Eigen::Vector2d& p_O, double elapsed_s,
+                          const BridgeConfig& config) const {
+  const Eigen::Vector2d d = p_O - state_.mean.head<2>();
+  const double c = std::cos(state_.mean[kYaw]);
+  const double s = std::sin(state_.mean[kYaw]);
   const double t2 = 0.5 * elapsed_s * elapsed_s;
+  const double heading_mps = yaw_sigma_rad_ * std::abs(state_.mean[kSpeed]);
   const double along =
-      (c * d.x() + s * d.y()) / (config.reach_along_m + config.reach_along_mps2 * t2);
+      (c * d.x() + s * d.y()) / (config.reach_along_m + config.reach_along_mps2 * t2 +
+                                 kSigmas * speed_sigma_mps_ * elapsed_s);
   const double across =
-      (-s * d.x() + c * d.y()) / (config.reach_across_m + config.reach_across_mps2 * t2);
+      (-s * d.x() + c * d.y()) /
+      (config.reach_across_m + config.reach_across_mps2 * t2 + kSigmas * heading_mps * elapsed_s);
   return along * along + across * across <= 1.0;
 }
 

@@ -7,6 +7,7 @@
 #include "daemon/base/time.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/track.h"
+#include "daemon/models/ctra.h"
 
 namespace v2vouch {
 
@@ -24,6 +25,8 @@ struct BridgeConfig {
   double reach_along_mps2 = 2.5;   ///< ... + half of this t^2,
   double reach_across_m = 1.5;     ///< across ...
   double reach_across_mps2 = 3.0;  ///< ... + half of this t^2: an honest turn stays inside.
+  double clear_share = 0.6;        ///< So much of a vehicle visible is a look in full view; ...
+  double max_clear_age_s = 3.0;    ///< ... the last one counts so long before the last hit.
   int max_misfits = 3;             ///< Claims in a row that do not fit the bridge end it.
   double look_s = 0.3;             ///< C11: at most one look at a place per this time.
   double least_detection = 0.5;    ///< C11: floor of the detection probability.
@@ -45,6 +48,8 @@ struct BridgeConfig {
     a.Field("reach_along_mps2", reach_along_mps2, {.at_least = 0.0, .at_most = 20.0});
     a.Field("reach_across_m", reach_across_m, {.at_least = 0.0, .at_most = 20.0});
     a.Field("reach_across_mps2", reach_across_mps2, {.at_least = 0.0, .at_most = 20.0});
+    a.Field("clear_share", clear_share, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("max_clear_age_s", max_clear_age_s, {.at_least = 0.0, .at_most = 30.0});
     a.Field("max_misfits", max_misfits, {.at_least = 1, .at_most = 100});
     a.Field("look_s", look_s, {.above = 0.01, .at_most = 5.0});
     a.Field("least_detection", least_detection, {.above = 0.0, .below = 1.0});
@@ -57,10 +62,33 @@ struct BridgeConfig {
 /// T = min(most, base + co-observed), at least `least`.
 double BridgeBudget_s(double co_observed_s, const BridgeConfig& config);
 
-/// Whether a vehicle can have got to `p_O` in `elapsed_s` since a sensor saw it.
-/// @param coast the state at last support, predicted to now without V2V: axes of the set.
-bool IsReachable(const KinematicState& coast, double elapsed_s, const Eigen::Vector2d& p_O,
-                 const BridgeConfig& config);
+/// A vehicle as the sensors alone knew it, carried on without V2V. Copyable, fixed size.
+class SensorCoast {
+ public:
+  SensorCoast() = default;
+  SensorCoast(const KinematicState& seen, Timestamp stamp);
+
+  void PredictTo(Timestamp stamp, const MotionNoise& motion);
+  [[nodiscard]] const KinematicState& state() const { return state_; }
+  [[nodiscard]] Timestamp taken() const { return taken_; }
+
+  /// Whether the vehicle can be at `p_O`, `elapsed_s` after a sensor last saw it: inside an ellipse
+  /// round the coast, along and across its direction,
+  ///
+  ///     along  = reach_along  + reach_along_mps2  t^2 / 2 + 2 sigma_speed t
+  ///     across = reach_across + reach_across_mps2 t^2 / 2 + 2 sigma_yaw speed t
+  ///
+  /// with the sigmas of the state that was taken.
+  [[nodiscard]] bool Reaches(const Eigen::Vector2d& p_O, double elapsed_s,
+                             const BridgeConfig& config) const;
+
+ private:
+  KinematicState state_;
+  Timestamp stamp_{};
+  Timestamp taken_{};
+  double yaw_sigma_rad_ = 0.0;
+  double speed_sigma_mps_ = 0.0;
+};
 
 /// Negative evidence (C11): how often the claimed place was in clear view and nothing was there.
 /// Copyable, fixed size.

@@ -23,8 +23,8 @@ struct PriorityVehicle {
   Timestamp handover{};                   ///< ... until then.
   Timestamp start{};
   PriorityFilter filter;
-  KinematicState coast;  ///< State at last sensor support, carried on without V2V.
-  Timestamp coast_stamp{};
+  SensorCoast coast{};        ///< From the last sensor support.
+  SensorCoast clear_coast{};  ///< From the last look that had it in full view.
 
   bool is_supported = true;  ///< Sensors see it; false: bridged.
   Timestamp last_support{};
@@ -37,12 +37,12 @@ struct PriorityVehicle {
   int misfits_in_a_row = 0;  ///< Claims that did not fit the filter.
   EmptyPlace empty{};
 
-  Extent extent;
+  Extent extent{};
   ObjectClass object_class = ObjectClass::kUnknown;
   double existence = 1.0;
   Visibility visibility = Visibility::kVisible;
-  std::optional<Timestamp> last_radar;
-  std::optional<Timestamp> last_camera;
+  std::optional<Timestamp> last_radar{};
+  std::optional<Timestamp> last_camera{};
   int radar_hits = 0;
   int camera_hits = 0;
 
@@ -50,6 +50,12 @@ struct PriorityVehicle {
   void PredictTo(Timestamp stamp, const PriorityFilterConfig& config);
   /// The vehicle at `at`, a copy; a little before the filter's own time is allowed.
   [[nodiscard]] KinematicState StateAt(Timestamp at, const PriorityFilterConfig& config) const;
+
+  /// Whether it can be at `p_O` at `now` by what the sensors knew when they lost it. A vehicle that
+  /// slips behind something is measured by ever smaller parts, which drag its direction: either
+  /// coast may be the better one.
+  [[nodiscard]] bool CanReach(const Eigen::Vector2d& p_O, Timestamp now,
+                              const BridgeConfig& config) const;
 
   /// Seconds for which V2V may still keep it alive at `now`.
   [[nodiscard]] double BudgetLeft_s(Timestamp now, const BridgeConfig& config) const {
