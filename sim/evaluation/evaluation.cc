@@ -114,6 +114,9 @@ std::unique_ptr<Evaluation> Evaluate(RunLog log, const ScoringSettings& settings
   evaluation->behaviour.local = behaviour_of(ListKind::kLocal);
   evaluation->behaviour.priority = behaviour_of(ListKind::kPriority);
   evaluation->behaviour.confirmation = JudgeConfirmation(evaluation->log, settings);
+  evaluation->misses = ExplainMisses(
+      evaluation->log, evaluation->grid, *evaluation->bound, evaluation->headline(ListKind::kLocal),
+      evaluation->headline(ListKind::kPriority), evaluation->settings);
   SetGates(*evaluation);
   return evaluation;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/evaluation/behaviour.h"
+#include "sim/evaluation/misses.h"
 #include "sim/evaluation/scoring.h"
 
 namespace v2vouch::evaluation {
@@ -44,6 +45,7 @@ struct Evaluation {
   std::vector<CutoffScores> cutoffs;  ///< The headline first, then 10 and 30 where they differ.
   HiddenError hidden;
   Behaviour behaviour;
+  std::vector<Miss> misses;               ///< Of PRIORITY, while the bound holds the vehicle.
   double validated_share = 0.0;           ///< Of the time PRIORITY could hold honest V2V cars.
   std::map<std::int64_t, double> hold_s;  ///< Per V2V vehicle: seconds in PRIORITY.
   std::vector<Gate> gates;

@@ -139,6 +139,14 @@ std::string ToJson(const Evaluation& evaluation, const Evaluation* paper) {
   for (const auto& [id, seconds] : evaluation.hold_s) {
     json["hold_s"][std::to_string(id)] = Rounded(seconds);
   }
+  json["priority_missed"] = Json::array();
+  for (const Miss& miss : evaluation.misses) {
+    json["priority_missed"].push_back({{"vehicle", miss.vehicle},
+                                       {"reason", MissReasonKey(miss.reason)},
+                                       {"check", miss.check},
+                                       {"seconds", Rounded(miss.seconds)},
+                                       {"first_s", Rounded(miss.first_s)}});
+  }
   json["instants"] = evaluation.headline(ListKind::kLocal).series.size();
   json["switching_penalty_m"] = evaluation.settings.switching();
   json["ideal_points"] = evaluation.log.specs.has_ideal_points;
@@ -211,7 +219,13 @@ std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
   for (const auto& [id, seconds] : evaluation.hold_s) {
     out += Line(" %lld: %.1f", static_cast<long long>(id), seconds);
   }
-  return out + "\n";
+  out += "\nmissed by PRIORITY though the bound holds it (vehicle, reason, seconds, from):\n";
+  for (const Miss& miss : evaluation.misses) {
+    out += Line("  %lld %s%s%s %.1f s from %.1f s\n", static_cast<long long>(miss.vehicle),
+                MissReasonKey(miss.reason), miss.check.empty() ? "" : " ", miss.check.c_str(),
+                miss.seconds, miss.first_s);
+  }
+  return out;
 }
 
 std::string ListSummaryJson(const RunLog& log) {

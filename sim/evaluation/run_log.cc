@@ -7,6 +7,7 @@
 #include <map>
 #include <v2vouch/bsm_t.hpp>
 #include <v2vouch/camera_detections_t.hpp>
+#include <v2vouch/misbehavior_report_t.hpp>
 #include <v2vouch/radar_scan_t.hpp>
 #include <v2vouch/text_t.hpp>
 #include <v2vouch/track_list_t.hpp>
@@ -38,6 +39,7 @@ class Reader {
     if (channel == "TRACKS_PRIORITY") return TakeList(event, ListKind::kPriority);
     if (channel == "TRUTH") return TakeTruth(event);
     if (channel == "BSM") return TakeBsm(event);
+    if (channel == "MISBEHAVIOR") return TakeReport(event);
     if (channel == "SIM_SCENARIO") return TakeScenario(event);
     if (channel.starts_with("RADAR_")) return TakeLook<radar_scan_t>(event);
     if (!channel.starts_with("CAMERA_") || channel.ends_with("_IMAGE")) return;
@@ -92,6 +94,7 @@ class Reader {
       out.sender = SenderFrom(track.v2v_id);
       out.start = FromMicros(track.start_utime);
       out.visibility = track.visibility;
+      out.trust = track.trust_state;
       list.tracks.push_back(out);
     }
     log_.lists[Index(kind)].push_back(std::move(list));
@@ -139,6 +142,12 @@ class Reader {
     if (message) log_.bsms.push_back({event.received, SenderFrom(message->id)});
   }
 
+  void TakeReport(const LogEvent& event) {
+    const auto message = Decoded<misbehavior_report_t>(event);
+    if (!message) return;
+    log_.reports.push_back({event.received, SenderFrom(message->sender_id), message->check});
+  }
+
   void TakeScenario(const LogEvent& event) {
     const auto message = Decoded<text_t>(event);
     if (message && scenario_.empty()) scenario_ = message->text;
@@ -153,6 +162,7 @@ class Reader {
       for (ReceivedList& list : lists) list.received -= recorder_ahead_;
     }
     for (BsmArrival& bsm : log_.bsms) bsm.received -= recorder_ahead_;
+    for (VerdictReport& report : log_.reports) report.received -= recorder_ahead_;
     for (auto& [look, channel] : looks_) look.received -= recorder_ahead_;
   }
 

@@ -34,6 +34,7 @@ struct ListedTrack {
   std::uint32_t sender = 0;
   Timestamp start{};   ///< When the track began.
   int visibility = 0;  ///< Constants of track_t: visible, hidden, out of view.
+  int trust = 0;       ///< Constants of track_t; of the sender, where there is one.
 };
 
 struct ReceivedList {
@@ -55,6 +56,13 @@ struct BsmArrival {
   std::uint32_t sender = 0;
 };
 
+/// A verdict about a sender, as published.
+struct VerdictReport {
+  Timestamp received{};
+  std::uint32_t sender = 0;
+  std::string check;
+};
+
 /// Everything evaluation takes from a log, each in order of arrival.
 struct RunLog {
   std::string path;
@@ -63,6 +71,7 @@ struct RunLog {
   std::array<std::vector<ReceivedList>, 3> lists;  ///< By ListKind.
   std::vector<SensorLook> looks;
   std::vector<BsmArrival> bsms;
+  std::vector<VerdictReport> reports;
   std::int64_t events = 0;
   std::int64_t refused = 0;  ///< Messages that did not decode.
   std::int64_t damaged = 0;  ///< Damaged stretches of the file.
