@@ -14,9 +14,18 @@ namespace {
 constexpr double kMinSize_m = 0.3;
 constexpr double kMaxLength_m = 25.0;
 constexpr double kMaxWidth_m = 4.0;
+// Standard deviations of range or azimuth by which a span may exceed the box and the noise.
+constexpr double kSpanSlack = 2.0;
+// Seen at a smaller angle than this (its sine), a flank has next to no width in azimuth.
+constexpr double kFlankShows = 0.3;
 // 2 cm after one second: nothing real, it keeps the filter able to change its mind.
 constexpr double kSizePsd = 4e-4;
 
+// How far the near face of a lorry may be from where a short vehicle's model had it.
+constexpr double kFaceSigma_m = 1.5;
+
+constexpr int kLength = ExtendedState::kLength;
+constexpr int kWidth = ExtendedState::kWidth;
 using Vector = ExtendedState::Vector;
 using Matrix = ExtendedState::Matrix;
 
@@ -31,15 +40,16 @@ void Clamp(ExtendedState& state) {
 }  // namespace
 
 Extent ClassExtent(ObjectClass object_class) {
-  // Passenger cars after the European and US fleets' usual figures; lorries and buses after the
-  // 12 m x 2.55 m limit of Directive 96/53/EC, with articulated ones in the spread.
+  // Passenger cars after the European and US fleets' usual figures; lorries and buses after
+  // Directive 96/53/EC: 12 m x 2.55 m, articulated lorries 16.5 m, which are most of those on
+  // motorways, and smaller ones in town.
   switch (object_class) {
     case ObjectClass::kCar:
       return {4.5, 1.8, 0.4, 0.1};
     case ObjectClass::kVan:
       return {5.2, 2.0, 0.6, 0.15};
     case ObjectClass::kTruck:
-      return {10.0, 2.5, 3.0, 0.15};
+      return {13.0, 2.5, 3.5, 0.15};
     case ObjectClass::kBus:
       return {12.0, 2.55, 1.5, 0.1};
     case ObjectClass::kMotorcycle:
@@ -158,6 +168,29 @@ void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state) {
   Clamp(state);
 }
 
+void AssumeLongClass(ObjectClass to, const Eigen::Vector2d& seen_from_O, ExtendedState& state) {
+  const Extent size = ClassExtent(to);
+  const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
+  const double away = forward.dot(state.mean.head<2>() - seen_from_O) >= 0.0 ? 1.0 : -1.0;
+  // Change of state per metre of length with the near face fixed.
+  Vector growth = Vector::Zero();
+  growth.head<2>() = 0.5 * away * forward;
+  growth[kLength] = 1.0;
+  // State of the near face: what is left of it once the length is taken out.
+  Matrix to_face = Matrix::Identity();
+  to_face.col(kLength) -= growth;
+  Matrix P = to_face * state.covariance * to_face.transpose();
+  P.topLeftCorner<2, 2>() += kFaceSigma_m * kFaceSigma_m * forward * forward.transpose();
+  P.row(kWidth).setZero();
+  P.col(kWidth).setZero();
+  P(kWidth, kWidth) = size.width_sigma_m * size.width_sigma_m;
+  P += size.length_sigma_m * size.length_sigma_m * growth * growth.transpose();
+  state.covariance = 0.5 * (P + P.transpose());
+  state.mean += (size.length_m - state.mean[kLength]) * growth;
+  state.mean[kWidth] = size.width_m;
+  Clamp(state);
+}
+
 void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O,
               ExtendedState& state) {
   const double growth = length_m - state.mean[ExtendedState::kLength];
@@ -189,19 +222,20 @@ std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoSta
   out.H.setZero(2, kStateSize);
   out.E.resize(2, 2);
   out.E.row(0) << ca, sa;
-  out.E.row(1) << sa / range, ca / range;
+  out.E.row(1) << (sa > kFlankShows ? sa / range : 0.0), ca / range;
   out.R.setZero(2, 2);
   const Eigen::Vector2d sigma(radar.range_sigma_m, radar.azimuth_sigma_rad);
   const Eigen::Vector2d span(measurement.radial_extent_m,
                              measurement.azimuth_max_rad - measurement.azimuth_min_rad);
-  const Eigen::Vector2d whole = out.E * state.mean.tail<2>();
+  const Eigen::Vector2d whole(ca * state.mean[kLength] + sa * state.mean[kWidth],
+                              (sa * state.mean[kLength] + ca * state.mean[kWidth]) / range);
   bool says_something = false;
   for (int i = 0; i < 2; ++i) {
-    // Noise alone spreads n returns over about 2 sigma sqrt(ln n); spans add as squares. One sigma
-    // more is given away, so that repeated noise does not make vehicles grow.
-    const double noise2 = 4.0 * std::log(measurement.returns) * sigma[i] * sigma[i];
-    const double excess =
-        std::sqrt(std::max(span[i] * span[i] - noise2, 0.0)) - sigma[i] - whole[i];
+    // Noise alone spreads n returns over about 2 sigma sqrt(ln n), and what one scan shows too much
+    // the next one shows again: vehicles must not grow by it.
+    const double noise = 2.0 * std::sqrt(std::log(measurement.returns)) * sigma[i];
+    const double excess = span[i] - noise - kSpanSlack * sigma[i] - whole[i];
+    const double noise2 = noise * noise;
     out.R(i, i) = noise2;
     if (excess > 0.0) {
       out.y[i] = excess;

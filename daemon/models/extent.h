@@ -58,6 +58,12 @@ std::optional<Likelihood> EvaluateExtended(const LinearizedPose& measurement,
 /// the face that was measured stays where it is.
 void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state);
 
+/// AssumeClass for a short vehicle that turns out to be a lorry or bus: only its near face was
+/// seen, and that not well, since the mean of reflections was taken for a short vehicle's. The face
+/// stays where it is, 1.5 m uncertain along the axis; the centre lies half of the new length behind
+/// it.
+void AssumeLongClass(ObjectClass to, const Eigen::Vector2d& seen_from_O, ExtendedState& state);
+
 /// Makes the vehicle at least `length_m` long, which is uncertain by `sigma_m`: it grows away from
 /// `seen_from_O`, the face that was measured stays where it is. Shorter ones leave it alone.
 void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O,

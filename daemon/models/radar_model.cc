@@ -19,6 +19,11 @@ constexpr double kLastingSpread = 0.04;
 // What is not seen shifts the mean of the rest, by up to half of its own length: for one face
 // (1 - s)^2 x spread. The same part stays unseen from scan to scan: so many looks count as one.
 constexpr double kUnseenLooks = 8.0;
+// Vehicles longer than this are measured at the end they turn to the radar, from this far before
+// it.
+constexpr double kLong_m = 7.0;
+constexpr double kEndGap_m = 2.0;
+constexpr double kEndSigma_m = 0.25;
 // Yaw rate that an estimate of it may miss while a vehicle begins to turn.
 constexpr double kYawRateDoubt_radps = 0.15;
 
@@ -40,6 +45,21 @@ void CutByView(const RadarConfig& radar, double sensor_yaw_rad, const D& yaw, co
     const D edge = D(sensor_yaw_rad + side * radar.half_fov_rad) - yaw;
     box.Cut({side * sin(edge), -side * cos(edge)});
   }
+}
+
+// Distance to the front or rear of a long vehicle, where the radar stands before it: the mean of
+// the reflections along ten metres says little about where the vehicle is, the nearest one much.
+// nullopt for short vehicles and beside the flank.
+std::optional<D> NearEnd(const D& px, const D& py, const D& c, const D& s, const Extent& extent) {
+  if (extent.length_m < kLong_m) return std::nullopt;
+  const D sx = -(c * px + s * py);  // The radar in vehicle axes.
+  const D sy = s * px - c * py;
+  const double ahead = sx.value >= 0.0 ? 1.0 : -1.0;
+  const D gap = ahead * sx - 0.5 * D::Variable(extent.length_m, kStateSize);
+  if (gap.value < kEndGap_m) return std::nullopt;
+  const double aside = sy.value >= 0.0 ? 1.0 : -1.0;
+  const D past = aside * sy - 0.5 * D::Variable(extent.width_m, kStateSize + 1);
+  return past.value > 0.0 ? sqrt(gap * gap + past * past) : gap;
 }
 
 }  // namespace
@@ -108,18 +128,25 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
   const D vx = speed * c - yaw_rate * oy - D(v_R_O.x());
   const D vy = speed * s + yaw_rate * ox - D(v_R_O.y());
   const D range_rate = (qx * vx + qy * vy) / range;
+  const auto near_end = NearEnd(px, py, c, s, extent);
   const D azimuth_O = atan2(qy, qx);
 
   Linearized out;
   out.y.resize(3);
   out.H.resize(3, Eigen::NoChange);
   out.E.resize(3, Eigen::NoChange);
-  const D* const rows[3] = {&range, &azimuth_O, &range_rate};
+  const D* const rows[3] = {near_end ? &*near_end : &range, &azimuth_O, &range_rate};
   for (int i = 0; i < 3; ++i) {
     out.H.row(i) = rows[i]->gradient.head<kStateSize>();
     out.E.row(i) = rows[i]->gradient.tail<2>();
   }
   out.y[0] = measurement.range_m - range.value;
+  if (near_end) {
+    // The nearest of a few reflections lies before the face by what noise does to it.
+    const double few = 0.5 * (1.0 + std::max(measurement.returns, 1));
+    const double early_m = radar.range_sigma_m * std::sqrt(0.6 * std::log(few));
+    out.y[0] = measurement.near_range_m + early_m - near_end->value;
+  }
   out.y[1] = WrapAngle(measurement.azimuth_rad + X_OR.yaw_rad() - azimuth_O.value);
   out.y[2] = measurement.range_rate_mps - range_rate.value;
 
@@ -154,6 +181,12 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
     R(2, 2) += kYawRateDoubt_radps * kYawRateDoubt_radps * across.dot(spread_O * across) / n;
     const Eigen::Array3d missing = given - mean.diagonal().array();
     R.diagonal().array() += missing.max(0.0);
+    if (near_end) {
+      // It has no part in the scatter of the others.
+      R.row(0).setZero();
+      R.col(0).setZero();
+      R(0, 0) = radar.range_sigma_m * radar.range_sigma_m + kEndSigma_m * kEndSigma_m;
+    }
   }
   // The ego's own motion is measured too: its noise reaches every range rate.
   const Eigen::Vector2d line_B = ego.X_OB.rotation().transpose() * line;

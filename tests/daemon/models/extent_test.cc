@@ -30,9 +30,9 @@ TEST(AssumeClass, NamingATruckMovesItsCentreAndKeepsItsRear) {
   ExtendedState state = LeadCar(ObjectClass::kUnknown);
   const double rear = state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength];
   AssumeClass(ObjectClass::kUnknown, ObjectClass::kTruck, state);
-  EXPECT_NEAR(state.mean[ExtendedState::kLength], 10.0, 1e-6);
+  EXPECT_NEAR(state.mean[ExtendedState::kLength], 13.0, 1e-6);
   EXPECT_NEAR(state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength], rear, 1e-6);
-  EXPECT_NEAR(state.extent().length_sigma_m, 3.0, 1e-6);
+  EXPECT_NEAR(state.extent().length_sigma_m, 3.5, 1e-6);
   const Eigen::SelfAdjointEigenSolver<ExtendedState::Matrix> solver(state.covariance);
   EXPECT_GT(solver.eigenvalues().minCoeff(), 0.0);
 }
@@ -44,6 +44,29 @@ TEST(AssumeClass, AMeasuredSizeOutweighsTheName) {
   state.covariance(ExtendedState::kLength, kX) = 0.005;
   AssumeClass(ObjectClass::kUnknown, ObjectClass::kTruck, state);
   EXPECT_NEAR(state.mean[ExtendedState::kLength], 4.6, 0.05);
+}
+
+// A track of a lorry begins as one of a car whose middle reflects.
+TEST(AssumeLongClass, KeepsTheNearFaceAndTiesTheCentreToTheLength) {
+  ExtendedState state = LeadCar(ObjectClass::kUnknown);
+  const double rear = state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength];
+  AssumeLongClass(ObjectClass::kTruck, Eigen::Vector2d::Zero(), state);
+  const double length_variance = 3.5 * 3.5;
+  EXPECT_NEAR(state.mean[ExtendedState::kLength], 13.0, 1e-9);
+  EXPECT_NEAR(state.mean[kX] - 6.5, rear, 1e-9);
+  EXPECT_NEAR(state.covariance(kX, ExtendedState::kLength), 0.5 * length_variance, 1e-9);
+  // A better range of the face moves the whole lorry and leaves its length alone.
+  Linearized face;
+  face.y = Eigen::VectorXd::Constant(1, 1.0);
+  face.H.setZero(1, kStateSize);
+  face.H(0, kX) = 1.0;
+  face.E.resize(1, 2);
+  face.E << -0.5, 0.0;
+  face.R = Eigen::MatrixXd::Constant(1, 1, 0.01);
+  ASSERT_TRUE(UpdateExtended(face, state));
+  EXPECT_NEAR(state.mean[kX] - 6.5, rear + 1.0, 0.02);
+  EXPECT_NEAR(state.mean[ExtendedState::kLength], 13.0, 0.02);
+  EXPECT_GT(std::sqrt(state.covariance(kX, kX)), 1.7);
 }
 
 TEST(PredictExtended, KeepsTheCentreTiedToTheLength) {
@@ -59,6 +82,7 @@ TEST(LinearizeSpan, ALongSideSeenBroadsideTeachesTheLength) {
   state.mean[kX] = 30.0;
   state.mean[kYaw] = 0.5 * kPi;
   RadarConfig radar;
+  radar.azimuth_sigma_rad = FromDegrees(0.3);
   RadarMeasurement z;
   z.returns = 8;
   z.azimuth_min_rad = -0.12;  // 7.2 m at 30 m.
