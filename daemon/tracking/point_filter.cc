@@ -14,6 +14,7 @@ namespace {
 // Across the line of sight one look says nothing about the velocity: road traffic, 1 sigma.
 constexpr double kCrossSpeedSigma_mps = 10.0;
 constexpr double kCameraSpeedSigma_mps = 8.0;
+constexpr double kPairedSpeedSigma_mps = 2.0;
 // White acceleration of a point [m^2/s^3]: 2 m/s^2 that last for about a second.
 constexpr double kPointAccelPsd = 4.0;
 // One reflection lies anywhere on a vehicle whose direction is unknown: this far from the mean of
@@ -135,6 +136,12 @@ std::optional<Likelihood> EvaluateModel(const std::optional<Model>& model,
 
 }  // namespace
 
+Fix ReflectionFixOf(const RadarLook& look, const RadarMeasurement& z) {
+  RadarMeasurement blurred = z;
+  blurred.covariance = PointNoise(z, look.radar);
+  return FixOf(look, blurred);
+}
+
 PointFilter PointFilter::FromRadar(const RadarLook& look, const RadarMeasurement& z,
                                    bool is_exact) {
   PointFilter filter;
@@ -144,9 +151,8 @@ PointFilter PointFilter::FromRadar(const RadarLook& look, const RadarMeasurement
   const double radial_sigma = std::sqrt(z.covariance(2, 2)) + look.ego.speed_sigma_mps + 0.1;
   filter.mean_ << fix.p_O, z.ground_range_rate_mps * line;
   filter.covariance_.setZero();
-  RadarMeasurement blurred = z;
-  blurred.covariance = is_exact ? z.covariance : PointNoise(z, look.radar);
-  filter.covariance_.topLeftCorner<2, 2>() = FixOf(look, blurred).covariance;
+  filter.covariance_.topLeftCorner<2, 2>() =
+      is_exact ? fix.covariance : ReflectionFixOf(look, z).covariance;
   filter.covariance_.bottomRightCorner<2, 2>() =
       radial_sigma * radial_sigma * line * line.transpose() +
       kCrossSpeedSigma_mps * kCrossSpeedSigma_mps * across * across.transpose();
@@ -160,6 +166,16 @@ PointFilter PointFilter::FromCamera(const CameraLook&, const Fix& fix) {
   filter.covariance_.topLeftCorner<2, 2>() = fix.covariance;
   filter.covariance_.bottomRightCorner<2, 2>() =
       kCameraSpeedSigma_mps * kCameraSpeedSigma_mps * Eigen::Matrix2d::Identity();
+  return filter;
+}
+
+PointFilter PointFilter::FromStanding(const Fix& fix) {
+  PointFilter filter;
+  filter.mean_ << fix.p_O, 0.0, 0.0;
+  filter.covariance_.setZero();
+  filter.covariance_.topLeftCorner<2, 2>() = fix.covariance;
+  filter.covariance_.bottomRightCorner<2, 2>() =
+      kPairedSpeedSigma_mps * kPairedSpeedSigma_mps * Eigen::Matrix2d::Identity();
   return filter;
 }
 

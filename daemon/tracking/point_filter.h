@@ -17,6 +17,8 @@ class PointFilter {
   /// @param is_exact the detections are of the vehicle's centre, free of the reflections' scatter.
   static PointFilter FromRadar(const RadarLook& look, const RadarMeasurement& z, bool is_exact);
   static PointFilter FromCamera(const CameraLook& look, const Fix& fix);
+  /// From a picture and a standing radar return in its direction.
+  static PointFilter FromStanding(const Fix& fix);
 
   void Predict(double dt_s);
 
@@ -43,5 +45,8 @@ class PointFilter {
   Eigen::Vector4d mean_ = Eigen::Vector4d::Zero();
   Eigen::Matrix4d covariance_ = Eigen::Matrix4d::Identity();
 };
+
+/// FixOf with the scatter of reflections over a vehicle of unknown direction.
+Fix ReflectionFixOf(const RadarLook& look, const RadarMeasurement& z);
 
 }  // namespace v2vouch

@@ -48,6 +48,10 @@ TrackFilter TrackFilter::FromCamera(const CameraLook& look, const CameraMeasurem
   return filter;
 }
 
+void TrackFilter::TakeStanding(const Fix& fix) {
+  if (!is_vehicle_) point_ = PointFilter::FromStanding(fix);
+}
+
 void TrackFilter::Predict(double dt_s, const FilterSettings& settings) {
   age_s_ += dt_s;
   if (is_vehicle_) {
@@ -74,13 +78,18 @@ bool TrackFilter::Update(const Look& look, const Measurement& z, const FilterSet
 }
 
 void TrackFilter::PromoteIfClear(const FilterSettings& settings) {
-  const Extent size = ClassExtent(object_class_);
+  // A lorry's point lies somewhere along it: AssumeClass knows how little that says.
+  const ObjectClass first = IsLong(object_class_) ? ObjectClass::kUnknown : object_class_;
+  const Extent size = ClassExtent(first);
   if (point_.HasDirection(kDirectedSigma_rad)) {
     vehicle_.StartMoving(point_, size, seen_from_, settings);
     is_vehicle_ = true;
   } else if (point_.IsStanding()) {
     vehicle_.StartStanding(point_, default_yaw_rad_, size, seen_from_, settings);
     is_vehicle_ = true;
+  }
+  if (is_vehicle_ && first != object_class_) {
+    vehicle_.AssumeClass(first, object_class_, seen_from_);
   }
 }
 
@@ -90,12 +99,7 @@ void TrackFilter::Lengthen(double length_m, double sigma_m) {
 
 void TrackFilter::SetClass(ObjectClass object_class) {
   if (object_class == object_class_) return;
-  if (is_vehicle_) {
-    vehicle_.AssumeClass(object_class_, object_class);
-    // Spans of a part made many a lorry a five-metre van: they bound its length from below only.
-    const Extent size = ClassExtent(object_class);
-    if (IsLong(object_class)) Lengthen(size.length_m, size.length_sigma_m);
-  }
+  if (is_vehicle_) vehicle_.AssumeClass(object_class_, object_class, seen_from_);
   object_class_ = object_class;
 }
 

@@ -29,6 +29,9 @@ class TrackFilter {
   /// A vehicle at once.
   static TrackFilter FromPose(const PoseMeasurement& measurement);
 
+  /// A track that only cameras have seen learns its range from a standing return in its direction.
+  void TakeStanding(const Fix& fix);
+
   void Predict(double dt_s, const FilterSettings& settings);
 
   /// The squared distance is that of the best component, the density that of the whole mixture.

@@ -31,9 +31,18 @@ constexpr double kMinDetection = 0.02;
 constexpr double kSureExistence = 0.9999;
 // Standard deviations of the coarse gate; the chi-square gate decides.
 constexpr double kCoarseSigmas = 4.7;
+// A look that would have found the vehicle about as likely as not, and a picture that should have.
+constexpr double kClearLook = 0.4;
+constexpr double kExpectedInPicture = 0.7;
+// How long a hidden track is kept for each second it was known.
+constexpr double kHoldPerKnown = 3.0;
+constexpr double kLeastHold_s = 0.3;
 // Published tracks must share one place for so long before one of them goes, others for less.
 constexpr double kDuplicateHold_s = 0.2;
 constexpr double kTentativeHold_s = 0.1;
+// So many clusters out of another vehicle's box, and a track is no vehicle.
+constexpr int kMostBorrowed = 5;
+constexpr double kBorrowedAside_m = 0.3;
 // A centre counts as inside of a box this far behind its ends.
 constexpr double kInside_m = 0.5;
 constexpr double kMaxEndDoubt_m = 1.5;
@@ -116,7 +125,14 @@ void Tracker::Predict(Timestamp stamp) {
       continue;
     }
     const double silent_s = ToSeconds(now_ - hidden.last_hit);
-    if (track.visibility != Visibility::kVisible && silent_s > config_.hidden_hold_s) {
+    // What was seen for a moment only is not waited for.
+    const double known_s = ToSeconds(hidden.last_hit - track.start);
+    // Boxes alone leave the velocity open.
+    const bool has_velocity = track.radar_hits + hidden.pose_hits > 0;
+    const double hold_s =
+        has_velocity ? std::min(config_.hidden_hold_s, kHoldPerKnown * known_s + kLeastHold_s)
+                     : kLeastHold_s;
+    if (track.visibility != Visibility::kVisible && silent_s > hold_s) {
       hidden.is_dead = true;
     }
     if (silent_s > kCoastingSince_s && !IsWorthListing(i)) hidden.is_dead = true;
@@ -270,6 +286,16 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
       continue;
     }
     Hit(i);
+    // A post in the vehicle's place would have been seen as well.
+    Hidden& hidden = hidden_[i];
+    if (z.is_static) {
+      tracks_[i].existence = std::min(tracks_[i].existence, hidden.proven);
+    } else {
+      hidden.proven = std::max(hidden.proven, tracks_[i].existence);
+    }
+    if (detection_[i] >= kClearLook) ++hidden.clear_hits;
+    hidden.reflection_O = candidates_[static_cast<std::size_t>(assigned_[i])].p_O;
+    hidden.reflected = now_;
     tracks_[i].last_radar = now_;
     ++tracks_[i].radar_hits;
     if (!z.is_static) ++hidden_[i].moving_hits;
@@ -293,6 +319,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
       updates_.push_back({tracks_.back().id, measurements[j]});
     }
   }
+  KeepReturns(look, radar, measurements);
   Conclude(since_update_s_);
 }
 
@@ -361,7 +388,14 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
   Associate(measurements.size());
 
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (assigned_[i] < 0) continue;
+    double& proven = hidden_[i].proven;
+    proven = assigned_[i] < 0 ? ExistenceAfterMiss(proven, missing_[i])
+                              : std::max(proven, tracks_[i].existence);
+    tracks_[i].existence = std::min(tracks_[i].existence, proven);
+    if (assigned_[i] < 0) {
+      if (detection_[i] >= kExpectedInPicture) ++hidden_[i].not_pictured;
+      continue;
+    }
     const CameraMeasurement z = Given(i, measurements[static_cast<std::size_t>(assigned_[i])]);
     candidates_[static_cast<std::size_t>(assigned_[i])].may_start = false;
     Vote(i, z);
@@ -371,16 +405,22 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
       continue;
     }
     Hit(i);
+    hidden_[i].is_far =
+        (hidden_[i].filter.position_O() - origin_O).norm() > config_.camera_birth_range_m;
     tracks_[i].last_camera = now_;
     ++tracks_[i].camera_hits;
     updates_.push_back({tracks_[i].id, z});
+    if (tracks_[i].radar_hits > 0) continue;
+    hidden_[i].glances.Add(look, z);
+    if (const auto at = FindStanding(hidden_[i].glances)) hidden_[i].filter.TakeStanding(*at);
   }
   const std::size_t known = tracks_.size();
   for (std::size_t j = 0; j < measurements.size(); ++j) {
     if (!candidates_[j].may_start) continue;
     const CameraMeasurement& z = measurements[j];
     const auto fix = FixOf(look, z);
-    if (!fix || (fix->p_O - origin_O).norm() > config_.camera_birth_range_m) continue;
+    if (!fix) continue;
+    if ((fix->p_O - origin_O).norm() > look.camera.max_range_m) continue;
     bool is_covered = false;
     for (std::size_t i = 0; i < known && !is_covered; ++i) {
       is_covered = assigned_[i] < 0 && Covers(i, look, z);
@@ -431,6 +471,7 @@ bool Tracker::StartAs(std::uint64_t id, const TrackFilter& filter, double existe
   track.existence = std::max(existence, kMinBirth);
   filter.Show(settings_, track);
   Hidden hidden;
+  hidden.proven = track.existence;
   hidden.filter = filter;
   hidden.last_hit = now_;
   tracks_.push_back(track);
@@ -450,11 +491,8 @@ void Tracker::Conclude(double dt_s) {
       hidden.is_dead = true;
       continue;
     }
-    const int hits = track.radar_hits + track.camera_hits + hidden.pose_hits;
-    if (!track.is_confirmed && track.existence >= config_.confirm_existence &&
-        hits >= config_.confirm_hits &&
-        track.camera_hits + hidden.moving_hits + hidden.pose_hits >= 2 &&
-        LargestSigma(hidden.filter.position_covariance()) <= config_.max_position_sigma_m) {
+    const int hits = Hits(i);
+    if (!track.is_confirmed && IsConvincing(i)) {
       track.is_confirmed = true;
     } else if (track.is_confirmed &&
                (track.existence < config_.keep_existence || !IsWorthListing(i))) {
@@ -502,12 +540,36 @@ void Tracker::DropDuplicates(double dt_s) {
   places_.Sort();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     bool overlaps = false;
-    places_.ForEachNear(tracks_[i].state_O.mean.head<2>(), 0.5 * kLongest_m,
-                        [&](std::size_t j) { overlaps = overlaps || IsWithin(i, j); });
+    bool borrows = false;
+    places_.ForEachNear(tracks_[i].state_O.mean.head<2>(), 0.5 * kLongest_m, [&](std::size_t j) {
+      overlaps = overlaps || IsWithin(i, j);
+      borrows = borrows || Borrows(i, j);
+    });
+    if (hidden_[i].reflected == now_) {
+      int& borrowed = hidden_[i].borrowed;
+      borrowed = borrows ? borrowed + 1 : std::max(borrowed - 2, 0);
+      if (borrowed >= kMostBorrowed) hidden_[i].is_dead = true;
+    }
     hidden_[i].overlap_s = overlaps ? hidden_[i].overlap_s + dt_s : 0.0;
     const double hold_s = tracks_[i].is_confirmed ? kDuplicateHold_s : kTentativeHold_s;
     if (overlaps && hidden_[i].overlap_s > hold_s) hidden_[i].is_dead = true;
   }
+}
+
+// Whether the last reflection of track i came out of the box of track j, its senior: it may live on
+// what a lorry's flank reflects without ever being where the lorry is.
+bool Tracker::Borrows(std::size_t i, std::size_t j) const {
+  const LocalTrack& owner = tracks_[j];
+  if (i == j || hidden_[i].reflected != now_ || hidden_[j].is_dead || !owner.is_confirmed) {
+    return false;
+  }
+  if (!hidden_[j].filter.is_vehicle() || !IsSenior(owner, tracks_[i]) || SeenAsTwo(j, i)) {
+    return false;
+  }
+  const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-owner.state_O.mean[kYaw]) *
+                                 (hidden_[i].reflection_O - owner.state_O.mean.head<2>());
+  return std::abs(inside.x()) < 0.5 * owner.extent.length_m &&
+         std::abs(inside.y()) < 0.5 * owner.extent.width_m + kBorrowedAside_m;
 }
 
 // Whether track i stands in the place of track j, its senior, and moves with it.

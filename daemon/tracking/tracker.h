@@ -17,6 +17,7 @@
 #include "daemon/models/ctra.h"
 #include "daemon/tracking/candidates.h"
 #include "daemon/tracking/existence.h"
+#include "daemon/tracking/glances.h"
 #include "daemon/tracking/track_filter.h"
 
 namespace v2vouch {
@@ -36,7 +37,7 @@ struct TrackerConfig {
   double max_position_sigma_m = 5.0;   ///< A less certain track is not published anew.
   double list_cutoff_m = 10.0;         ///< c of the rule that ends a coasting track, see Tracker.
   double miss_memory_s = 0.15;         ///< Misses of a published track closer than this are one.
-  double camera_birth_range_m = 60.0;  ///< A box alone starts a track only within this.
+  double camera_birth_range_m = 60.0;  ///< Farther out, boxes alone publish nothing.
   int max_tracks = 512;
 
   template <class Archive>
@@ -92,7 +93,7 @@ struct PoseUpdate {
 /// log-likelihood ratio with exact assignment in gated clusters, existence from marginals, birth
 /// from what is left. Copyable: a copy is a checkpoint. Same inputs, same bits.
 ///
-/// - A moving radar cluster starts a track, a camera box within camera_birth_range_m too. A
+/// - A moving radar cluster starts a track, a camera box too. A
 /// standing
 ///   cluster starts none; it keeps alive what a camera named or what was seen moving. Nothing is
 ///   published that was not seen twice by a camera or in motion.
@@ -106,6 +107,12 @@ struct PoseUpdate {
 /// - Misses of a published track follow from each other: what the visibility did not know of hides
 ///   it in the next look too. A look after dt counts as min(1, dt / miss_memory_s) of one, which
 ///   also makes a track's end a matter of time and not of the sensors' rates.
+/// - A standing return keeps a track alive but makes its existence no likelier than pictures and
+///   motion have: something that is no vehicle and stands there would be seen as well.
+/// - A box names a vehicle, but its range is a guess (4 m at 40 m): while no radar has seen the
+///   track, it takes that of the nearest standing return inside the box's bearings and three sigma
+///   of its range. What is nearer would cover the vehicle, what is farther is covered by it. Where
+///   a return there moves, the box waits for a track of that.
 /// - A further cluster inside a tracked vehicle's footprint with its Doppler belongs to that
 /// vehicle:
 ///   it joins the measurement and starts nothing.
@@ -155,13 +162,27 @@ class Tracker {
   struct Hidden {  // What the rest of the program need not see of a track.
     TrackFilter filter;
     Timestamp last_hit{};
-    int moving_hits = 0;  // Radar clusters with a Doppler of their own.
+    double proven = 0.0;  // Existence by pictures and motion alone.
+    Eigen::Vector2d reflection_O = Eigen::Vector2d::Zero();  // Last cluster it was given,
+    Timestamp reflected{};                                   // and when.
+    int borrowed = 0;      // Clusters out of an older vehicle's box, own ones taken off twice.
+    int clear_hits = 0;    // Radar clusters from where the radar can see.
+    int not_pictured = 0;  // Pictures that ought to have shown it.
+    int moving_hits = 0;   // Radar clusters with a Doppler of their own.
     int pose_hits = 0;
     Timestamp last_pose{};
     double overlap_s = 0.0;  // How long an older track has been in the same place.
     double part_s = 0.0;     // How long it could be the far end of a lorry or bus.
     std::array<double, 8> class_votes{};
+    Glances glances;      // While no radar has seen it.
+    bool is_far = false;  // Beyond camera_birth_range_m at its last box.
     bool is_dead = false;
+  };
+  struct RecentReturn {  // Moving, or standing and of no track.
+    Fix fix;
+    int radar = 0;
+    int returns = 1;
+    bool is_moving = false;
   };
   template <class Look, class Measurement>
   void GatePair(std::size_t track, std::size_t measurement, const Look& look, const Measurement& z);
@@ -181,6 +202,9 @@ class Tracker {
             const Eigen::Vector2d& p_O) const;
   bool SeenAsTwo(std::size_t a, std::size_t b) const;
   bool Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z) const;
+  void KeepReturns(const RadarLook& look, int radar,
+                   std::span<const RadarMeasurement> measurements);
+  [[nodiscard]] std::optional<Fix> FindStanding(const Glances& glances) const;
   void Hit(std::size_t track);
   void Vote(std::size_t track, const CameraMeasurement& z);
   void Start(const TrackFilter& filter, int sensor, std::size_t index, double existence);
@@ -191,6 +215,9 @@ class Tracker {
   [[nodiscard]] bool IsWithin(std::size_t i, std::size_t j) const;
   void JoinParts(double dt_s);
   [[nodiscard]] std::optional<double> LengthWithPart(std::size_t i, std::size_t j) const;
+  [[nodiscard]] int Hits(std::size_t track) const;
+  [[nodiscard]] bool Borrows(std::size_t i, std::size_t j) const;
+  [[nodiscard]] bool IsConvincing(std::size_t track) const;
   void Conclude(double dt_s);
   void RemoveDead();
 
@@ -203,6 +230,7 @@ class Tracker {
   std::array<Timestamp, 16> last_look_{};  // By sensor as in PackId.
   std::vector<LocalTrack> tracks_;
   std::vector<Hidden> hidden_;
+  std::vector<RecentReturn> recent_;  // Of each radar's last scan.
   std::vector<SensorUpdate> updates_;
   std::vector<PoseUpdate> pose_updates_;
   std::vector<Reason> failures_;

@@ -61,6 +61,19 @@ unsigned Frozen(const ExtendedState& state, const Eigen::Vector2d& seen_from_O) 
   return std::abs(std::sin(aspect)) < kLengthShows ? 1U << ExtendedState::kLength : 0U;
 }
 
+bool IsLong(ObjectClass object_class) {
+  return object_class == ObjectClass::kTruck || object_class == ObjectClass::kBus;
+}
+
+void Rename(ObjectClass from, ObjectClass to, const Eigen::Vector2d& seen_from_O,
+            ExtendedState& state) {
+  if (IsLong(to) && !IsLong(from)) {
+    AssumeLongClass(to, seen_from_O, state);
+  } else {
+    AssumeClass(from, to, state);
+  }
+}
+
 template <class Look, class Measurement>
 bool UpdateState(const Look& look, const Measurement& z, bool is_young,
                  const FilterSettings& settings, ExtendedState& state) {
@@ -97,8 +110,7 @@ void LearnSpan(const RadarLook& look, const RadarMeasurement& z, ObjectClass obj
   if (!UpdateExtended(*span, grown)) return;
   // A span bounds the length from below. Lorries show their far end last, so that it must not make
   // their length certain.
-  const bool is_long = object_class == ObjectClass::kTruck || object_class == ObjectClass::kBus;
-  if (is_long) grown.covariance = state.covariance;
+  if (IsLong(object_class)) grown.covariance = state.covariance;
   state = grown;
 }
 void LearnSpan(const CameraLook&, const CameraMeasurement&, ObjectClass, const FilterSettings&,
@@ -212,7 +224,7 @@ std::optional<Likelihood> VehicleFilter::Evaluate(const Look& look, const Measur
     if constexpr (kLearnsSize<Measurement>) {
       if (object_class == ObjectClass::kUnknown && z.object_class != ObjectClass::kUnknown) {
         named = *state;
-        v2vouch::AssumeClass(object_class, z.object_class, named);
+        Rename(object_class, z.object_class, look.origin_O(), named);
         state = &named;
       }
     }
@@ -312,8 +324,9 @@ void VehicleFilter::TurnRound() {
   }
 }
 
-void VehicleFilter::AssumeClass(ObjectClass from, ObjectClass to) {
-  for (std::size_t i = 0; i < count_; ++i) v2vouch::AssumeClass(from, to, components_[i].state);
+void VehicleFilter::AssumeClass(ObjectClass from, ObjectClass to,
+                                const Eigen::Vector2d& seen_from_O) {
+  for (std::size_t i = 0; i < count_; ++i) Rename(from, to, seen_from_O, components_[i].state);
 }
 
 void VehicleFilter::Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O) {

@@ -64,7 +64,7 @@ class VehicleFilter {
   /// One axis is left, and its front is known.
   [[nodiscard]] bool knows_direction() const { return count_ == 1 && has_driven_; }
 
-  void AssumeClass(ObjectClass from, ObjectClass to);
+  void AssumeClass(ObjectClass from, ObjectClass to, const Eigen::Vector2d& seen_from_O);
   void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O);
 
   /// The likeliest component; its position is the mixture's mean, its position covariance widened

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/tracking/tracker.h"
+
+namespace v2vouch {
+namespace {
+
+// After the first, which is not asked. A radar sees mirror images behind rails and facades, where
+// it cannot see at all.
+constexpr int kClearHits = 2;
+// What no picture shows although it should is a mirror image, or a vehicle that the camera is blind
+// for. Images come and go within tenths of a second.
+constexpr int kMissingPictures = 2;
+constexpr double kLastingImage_s = 1.0;
+constexpr int kLastingHits = 15;
+
+}  // namespace
+
+int Tracker::Hits(std::size_t track) const {
+  return tracks_[track].radar_hits + tracks_[track].camera_hits + hidden_[track].pose_hits;
+}
+
+// Whether a track may be published for the first time.
+bool Tracker::IsConvincing(std::size_t track) const {
+  const LocalTrack& shown = tracks_[track];
+  const Hidden& hidden = hidden_[track];
+  if (shown.existence < config_.confirm_existence || Hits(track) < config_.confirm_hits) {
+    return false;
+  }
+  if (shown.camera_hits + hidden.moving_hits + hidden.pose_hits < 2) return false;
+  if (LargestSigma(hidden.filter.position_covariance()) > config_.max_position_sigma_m) {
+    return false;
+  }
+  if (hidden.pose_hits > 0) return true;
+  if (shown.camera_hits > 0) return shown.radar_hits > 0 || !hidden.is_far;
+  if (hidden.clear_hits < kClearHits) return false;
+  if (hidden.not_pictured < kMissingPictures) return true;
+  return shown.radar_hits >= kLastingHits &&
+         ToSeconds(hidden.last_hit - shown.start) >= kLastingImage_s;
+}
+
+}  // namespace v2vouch
