@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "daemon/tracking/tracker.h"
@@ -7,10 +8,16 @@
 namespace v2vouch {
 namespace {
 
-constexpr std::size_t kLeastGlances = 3;
+// Something moves where a camera's guess is, in so many pictures: the guess is of that vehicle.
+constexpr int kMovingPictures = 3;
+constexpr std::size_t kLeastGlances = 5;
 constexpr double kRangeSigmas = 3.0;
 // One place must be this much likelier than any other, as the logarithm of a ratio.
-constexpr double kMargin = 2.0;
+constexpr double kMargin = 3.0;
+// Returns of a place are counted over so many scans of each of up to eight radars.
+constexpr int kKeptScans = 4;
+constexpr double kPostReturns = 1.1;
+constexpr double kMoreReturns = 0.5;
 // Vehicles show several reflections within this depth, posts one: ln of how much likelier.
 constexpr double kDepth_m = 3.0;
 constexpr double kSeveral = 2.0;
@@ -18,23 +25,25 @@ constexpr double kLone = -1.5;
 
 }  // namespace
 
-// What no track was given of this radar's scan, in place of what was kept of its last one.
+// What no track was given of this radar's scan, in place of what was kept of its oldest one.
 void Tracker::KeepReturns(const RadarLook& look, int radar,
                           std::span<const RadarMeasurement> measurements) {
-  std::erase_if(recent_, [radar](const RecentReturn& at) { return at.radar == radar; });
+  std::erase_if(recent_, [radar](RecentReturn& at) {
+    return at.radar == radar && ++at.scans_ago >= kKeptScans;
+  });
   for (std::size_t j = 0; j < measurements.size(); ++j) {
     const bool is_moving = !measurements[j].is_static;
     if (!is_moving && owner_[j] >= 0) continue;
     if (!candidates_[j].p_O.allFinite() || candidates_[j].reach_m == 0.0) continue;
     const Fix fix = settings_.point_targets ? FixOf(look, measurements[j])
                                             : ReflectionFixOf(look, measurements[j]);
-    recent_.push_back({fix, radar, measurements[j].returns, is_moving});
+    recent_.push_back({fix, radar, 0, measurements[j].returns, is_moving});
   }
 }
 
 // The place of the standing returns that a track's boxes agree on, if there is one such place.
-std::optional<Fix> Tracker::FindStanding(const Glances& glances) const {
-  if (glances.size() < kLeastGlances) return std::nullopt;
+Tracker::Place Tracker::FindPlace(const Glances& glances) const {
+  Place place;
   const auto count = static_cast<double>(glances.size());
   const double most = count + kRangeSigmas * std::sqrt(2.0 * count);
 
@@ -45,15 +54,24 @@ std::optional<Fix> Tracker::FindStanding(const Glances& glances) const {
   for (const RecentReturn& at : recent_) {
     const auto misfit = glances.Misfit(at.fix.p_O);
     if (!misfit || *misfit > most) continue;
-    if (at.is_moving) return std::nullopt;
+    if (at.is_moving) {
+      if (at.scans_ago == 0) place.is_moving = true;
+      continue;
+    }
     const double range_m = glances.RangeTo(at.fix.p_O);
+    // A post gives one return to a scan, a vehicle several.
     int returns = 0;
+    unsigned scans = 0;
     for (const RecentReturn& other : recent_) {
       const double behind_m = glances.RangeTo(other.fix.p_O) - range_m;
-      if (behind_m < 0.0 || behind_m > kDepth_m || !glances.Misfit(other.fix.p_O)) continue;
+      if (other.is_moving || behind_m < 0.0 || behind_m > kDepth_m) continue;
+      if (!glances.Misfit(other.fix.p_O)) continue;
       returns += other.returns;
+      scans |= 1U << (other.radar * kKeptScans + other.scans_ago);
     }
-    const double score = (returns > 1 ? kSeveral : kLone) - 0.5 * *misfit;
+    const double per_scan = returns / static_cast<double>(std::max(std::popcount(scans), 1));
+    const double plenty = std::clamp((per_scan - kPostReturns) / kMoreReturns, 0.0, 1.0);
+    const double score = kLone + plenty * (kSeveral - kLone) - 0.5 * *misfit;
     if (best_m < 0.0 || score > best_score) {
       // One place shows itself once for each of its returns.
       if (best_m >= 0.0 && std::abs(best_m - range_m) > kDepth_m) {
@@ -67,23 +85,38 @@ std::optional<Fix> Tracker::FindStanding(const Glances& glances) const {
       second_score = score;
     }
   }
-  if (best_m < 0.0 || (second_m >= 0.0 && best_score - second_score < kMargin)) {
-    return std::nullopt;
-  }
+  if (place.is_moving || glances.size() < kLeastGlances || best_m < 0.0) return place;
+  if (second_m >= 0.0 && best_score - second_score < kMargin) return place;
 
   Fix fix;
   fix.covariance.setZero();
   double sum = 0.0;
   for (const RecentReturn& at : recent_) {
     const double behind_m = glances.RangeTo(at.fix.p_O) - best_m;
-    if (behind_m < 0.0 || behind_m > kDepth_m || !glances.Misfit(at.fix.p_O)) continue;
+    if (at.is_moving || behind_m < 0.0 || behind_m > kDepth_m) continue;
+    if (!glances.Misfit(at.fix.p_O)) continue;
     fix.p_O += at.returns * at.fix.p_O;
     fix.covariance += at.returns * at.fix.covariance;
     sum += at.returns;
   }
   fix.p_O /= sum;
   fix.covariance /= sum;
-  return fix;
+  place.standing = fix;
+  return place;
+}
+
+// One more box of a track whose range is only guessed.
+void Tracker::LearnRange(std::size_t track, const CameraLook& look, const CameraMeasurement& z) {
+  Hidden& hidden = hidden_[track];
+  hidden.glances.Add(look, z);
+  const Place place = FindPlace(hidden.glances);
+  hidden.moving_there = place.is_moving ? hidden.moving_there + 1 : 0;
+  if (place.standing) {
+    hidden.filter.TakeStanding(*place.standing);
+    hidden.has_range = true;
+  } else if (hidden.moving_there >= kMovingPictures) {
+    hidden.is_dead = true;
+  }
 }
 
 }  // namespace v2vouch

@@ -31,6 +31,8 @@ constexpr double kMinDetection = 0.02;
 constexpr double kSureExistence = 0.9999;
 // Standard deviations of the coarse gate; the chi-square gate decides.
 constexpr double kCoarseSigmas = 4.7;
+// Sensor numbers as in PackId.
+constexpr int kFirstCamera = 8;
 // A look that would have found the vehicle about as likely as not, and a picture that should have.
 constexpr double kClearLook = 0.4;
 constexpr double kExpectedInPicture = 0.7;
@@ -165,6 +167,8 @@ void Tracker::AskDetectability(int sensor, const DetectabilityOf& detectability)
     seen_.push_back(answer);
     missing_[i] =
         tracks_[i].is_confirmed ? 1.0 - std::pow(1.0 - detection_[i], share) : detection_[i];
+    // A radar cannot miss what is only guessed to be there.
+    if (sensor < kFirstCamera && !hidden_[i].has_range) missing_[i] = 0.0;
     missed_[i] = 1.0 - tracks_[i].existence * missing_[i];
   }
 }
@@ -267,10 +271,15 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const double reach_m = kCoarseSigmas * LargestSigma(hidden_[i].filter.position_covariance()) +
                            0.7 * tracks_[i].extent.length_m;
+    // Long enough tried, a guess may meet standing returns by itself.
+    const bool is_guess = !hidden_[i].has_range;
+    if (is_guess && hidden_[i].glances.size() < Glances::kMost) continue;
     const bool takes_standing =
         tracks_[i].camera_hits > 0 || hidden_[i].moving_hits >= config_.confirm_hits;
     candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m, [&](std::size_t j) {
-      if (takes_standing || !measurements[j].is_static) GatePair(i, j, look, measurements[j]);
+      if (measurements[j].is_static ? takes_standing : !is_guess) {
+        GatePair(i, j, look, measurements[j]);
+      }
     });
   }
   Associate(measurements.size());
@@ -298,6 +307,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
     hidden.reflected = now_;
     tracks_[i].last_radar = now_;
     ++tracks_[i].radar_hits;
+    hidden.has_range = true;
     if (!z.is_static) ++hidden_[i].moving_hits;
     updates_.push_back({tracks_[i].id, z});
   }
@@ -363,7 +373,7 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
   costs_.clear();
   pairs_.clear();
   PrepareCamera(look, measurements);
-  AskDetectability(camera + 8, detectability);
+  AskDetectability(camera + kFirstCamera, detectability);
   const double axis = ego.X_OB.yaw_rad() + look.camera.yaw_rad;
   const Eigen::Vector2d origin_O = look.origin_O();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -410,9 +420,7 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
     tracks_[i].last_camera = now_;
     ++tracks_[i].camera_hits;
     updates_.push_back({tracks_[i].id, z});
-    if (tracks_[i].radar_hits > 0) continue;
-    hidden_[i].glances.Add(look, z);
-    if (const auto at = FindStanding(hidden_[i].glances)) hidden_[i].filter.TakeStanding(*at);
+    if (!hidden_[i].has_range) LearnRange(i, look, z);
   }
   const std::size_t known = tracks_.size();
   for (std::size_t j = 0; j < measurements.size(); ++j) {
@@ -426,12 +434,13 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
       is_covered = assigned_[i] < 0 && Covers(i, look, z);
     }
     if (is_covered) continue;
-    Start(TrackFilter::FromCamera(look, z, *fix), camera + 8, j,
+    Start(TrackFilter::FromCamera(look, z, *fix), camera + kFirstCamera, j,
           candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]));
     if (tracks_.size() > known && hidden_.back().last_hit == now_) {
       Vote(tracks_.size() - 1, z);
       tracks_.back().last_camera = now_;
       tracks_.back().camera_hits = 1;
+      hidden_.back().has_range = settings_.point_targets;
       updates_.push_back({tracks_.back().id, z});
     }
   }

@@ -174,13 +174,16 @@ class Tracker {
     double overlap_s = 0.0;  // How long an older track has been in the same place.
     double part_s = 0.0;     // How long it could be the far end of a lorry or bus.
     std::array<double, 8> class_votes{};
-    Glances glances;      // While no radar has seen it.
-    bool is_far = false;  // Beyond camera_birth_range_m at its last box.
+    Glances glances;        // While its range is a camera's guess,
+    bool has_range = true;  // which it no longer is.
+    int moving_there = 0;   // Pictures in a row with something moving where it was guessed.
+    bool is_far = false;    // Beyond camera_birth_range_m at its last box.
     bool is_dead = false;
   };
   struct RecentReturn {  // Moving, or standing and of no track.
     Fix fix;
     int radar = 0;
+    int scans_ago = 0;
     int returns = 1;
     bool is_moving = false;
   };
@@ -204,7 +207,12 @@ class Tracker {
   bool Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z) const;
   void KeepReturns(const RadarLook& look, int radar,
                    std::span<const RadarMeasurement> measurements);
-  [[nodiscard]] std::optional<Fix> FindStanding(const Glances& glances) const;
+  struct Place {  // What the boxes of a track agree on.
+    std::optional<Fix> standing;
+    bool is_moving = false;
+  };
+  [[nodiscard]] Place FindPlace(const Glances& glances) const;
+  void LearnRange(std::size_t track, const CameraLook& look, const CameraMeasurement& z);
   void Hit(std::size_t track);
   void Vote(std::size_t track, const CameraMeasurement& z);
   void Start(const TrackFilter& filter, int sensor, std::size_t index, double existence);
@@ -230,7 +238,7 @@ class Tracker {
   std::array<Timestamp, 16> last_look_{};  // By sensor as in PackId.
   std::vector<LocalTrack> tracks_;
   std::vector<Hidden> hidden_;
-  std::vector<RecentReturn> recent_;  // Of each radar's last scan.
+  std::vector<RecentReturn> recent_;  // Of each radar's last scans.
   std::vector<SensorUpdate> updates_;
   std::vector<PoseUpdate> pose_updates_;
   std::vector<Reason> failures_;
