@@ -16,6 +16,7 @@ struct PairObservation {
   Eigen::Matrix2d sensed = Eigen::Matrix2d::Zero();      ///< Covariance of the track's position.
   Eigen::Matrix2d noise = Eigen::Matrix2d::Identity();   ///< White part of the claim.
   Eigen::Matrix2d alignment = Eigen::Matrix2d::Zero();   ///< Ego pose error; slow, like a bias.
+  Eigen::Matrix2d stale = Eigen::Matrix2d::Zero();  ///< Along track: positions older than said.
   double speed_residual_mps = 0.0;
   double speed_sigma_mps = 0.3;            ///< Of the residual: claim and track together.
   std::optional<double> yaw_residual_rad;  ///< Where both directions mean something.
@@ -31,7 +32,7 @@ struct BiasPrior {
 /// Evidence that a sender is a LOCAL track, accumulated over messages.
 ///
 ///     score = sum of fading ln [ N(residual; bias, S) N(speed) N(yaw) / background ]  -  level
-///     level = b^T B0^-1 b / 2
+///     level = b^T (B0 + stale)^-1 b / 2
 ///
 /// The bias b of the sender is filtered beside (Gauss-Markov, prior B0), so S shrinks as it is
 /// learnt; its level is charged separately, because the innovations forget it and a car that
@@ -45,6 +46,10 @@ class PairEvidence {
   void Add(const PairObservation& observation, const AssociationConfig& config);
 
   [[nodiscard]] double score() const { return fading_ - level_; }
+  /// How unlikely the learnt bias is. Every vehicle that stands or drives like the
+  /// track, at whatever distance, agrees with it message by message once its offset is learnt:
+  /// however long the agreement lasts, only the level tells the neighbour from the track itself.
+  [[nodiscard]] double level() const { return level_; }
   [[nodiscard]] int observations() const { return observations_; }
   [[nodiscard]] Timestamp first() const { return first_; }
   [[nodiscard]] Timestamp last() const { return last_; }

@@ -200,6 +200,7 @@ void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
   if (!link.trust.TryValidate({.co_observations = evidence.observations(),
                                .span_s = evidence.span_s(),
                                .is_nis_consistent = evidence.is_nis_consistent(),
+                               .is_level_plausible = evidence.level() <= config.safe.max_level,
                                .margin = pairs_.Margin(*pair),
                                .min_margin = config.safe.min_margin,
                                .is_assigned = pair->is_assigned,
@@ -223,8 +224,8 @@ void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
       .filter =
           PriorityFilter(track.state_O, sensed_stamp_, evidence.bias(), evidence.bias_covariance(),
                          std::sqrt(alignment_.covariance()(2, 2)), config.filter),
-      .coast = SensorCoast(track.state_O, sensed_stamp_),
-      .clear_coast = SensorCoast(track.state_O, sensed_stamp_),
+      .coast = Coast(track.state_O, sensed_stamp_),
+      .agreed = Coast(track.state_O, sensed_stamp_),
       .last_support = last_hit,
       .co_observed_s = evidence.span_s(),
       .last_v2v = here.stamp,

@@ -13,6 +13,9 @@ namespace {
 // Below this a direction is a memory rather than a measurement.
 constexpr double kDirectionSpeed_mps = 2.0;
 constexpr double kClearShare = 0.9;
+// Positions are older than they say by so much and more, in some senders for good (as in the trust
+// checks): a sigma of half of what those allow.
+constexpr double kStale_s = 0.075;
 
 struct VelocityResidual {
   double speed_mps = 0.0;
@@ -67,6 +70,10 @@ PairObservation Compare(const ClaimInOdometry& claim, const KinematicState& sens
   observation.sensed = sensed.covariance.topLeftCorner<2, 2>();
   observation.noise = claim.noise;
   observation.alignment = claim.alignment;
+  const Eigen::Vector2d stale_m =
+      kStale_s * sensed.mean[kSpeed] *
+      Eigen::Vector2d(std::cos(sensed.mean[kYaw]), std::sin(sensed.mean[kYaw]));
+  observation.stale = stale_m * stale_m.transpose();
   const VelocityResidual velocity = VelocityOf(claim, sensed.mean);
   observation.speed_residual_mps = velocity.speed_mps;
   observation.speed_sigma_mps =

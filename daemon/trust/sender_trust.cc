@@ -72,6 +72,7 @@ bool SenderTrust::TryValidate(const ValidationEvidence& evidence, const TrustCon
   if (consistent_run_ < config.candidate_messages || evidence.is_accuracy_poor) return false;
   if (evidence.co_observations < config.co_observations) return false;
   if (evidence.span_s < config.co_observed_s) return false;
+  if (!evidence.is_level_plausible) return false;
   if (!evidence.is_nis_consistent || evidence.margin < evidence.min_margin) return false;
   if (!evidence.is_assigned || !evidence.are_sensors_sure) return false;
   state_ = TrustState::kValidated;

@@ -15,7 +15,8 @@ struct ValidationEvidence {
   int co_observations = 0;
   double span_s = 0.0;
   bool is_nis_consistent = false;
-  double margin = 0.0;  ///< Log-likelihood over the second best.
+  bool is_level_plausible = true;  ///< Its constant offset may be its bias.
+  double margin = 0.0;             ///< Log-likelihood over the second best.
   double min_margin = 4.0;
   bool is_assigned = false;          ///< Chosen one-to-one.
   bool are_sensors_sure = false;     ///< Radar and camera, or one of them long enough.

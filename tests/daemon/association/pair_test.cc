@@ -49,6 +49,56 @@ TEST(PairEvidence, DifferentSpeedEndsTheLikeness) {
   EXPECT_LT(evidence.score(), 0.0);
 }
 
+// A queue: the sender stands 5.2 m behind the only car that has a track. Message by message it
+// agrees as well as an honest bias would; the level tells.
+TEST(PairEvidence, ANeighbourThatStandsIsNoBiasHoweverLongItAgrees) {
+  const AssociationConfig config;
+  Random random(11);
+  int plausible = 0;
+  for (int run = 0; run < 200; ++run) {
+    const Eigen::Vector2d offset(0.8, 5.2);
+    PairEvidence evidence(config, std::nullopt, Observation(0.0, offset));
+    for (int i = 1; i < 300; ++i) {
+      evidence.Add(Observation(0.1 * i, offset + White(random), 0.2 * random.Normal()), config);
+    }
+    EXPECT_GT(evidence.score(), 10.0);
+    plausible += evidence.level() <= config.max_level ? 1 : 0;
+  }
+  EXPECT_EQ(plausible, 0);
+}
+
+TEST(PairEvidence, HonestBiasIsPlausible) {
+  const AssociationConfig config;
+  Random random(12);
+  int plausible = 0;
+  for (int run = 0; run < 200; ++run) {
+    // 1.05 m per axis: two receivers of 0.74 m each.
+    const Eigen::Vector2d bias = 1.05 * White(random);
+    PairEvidence evidence(config, std::nullopt, Observation(0.0, bias + White(random)));
+    for (int i = 1; i < 60; ++i) {
+      evidence.Add(Observation(0.1 * i, bias + White(random)), config);
+    }
+    plausible += evidence.level() <= config.max_level ? 1 : 0;
+  }
+  EXPECT_GE(plausible, 196);  // (3.67 / 1.05)^2 / 2 = 6.1: 0.2 % lie beyond.
+}
+
+TEST(PairEvidence, AStaleFastSenderIsPlausibleAlongItsTrackOnly) {
+  const AssociationConfig config;
+  const auto level = [&](const Eigen::Vector2d& residual_m) {
+    const auto at = [&](double time_s) {
+      PairObservation observation = Observation(time_s, residual_m);
+      observation.stale(0, 0) = 1.8 * 1.8;  // 0.075 s at 24 m/s.
+      return observation;
+    };
+    PairEvidence evidence(config, std::nullopt, at(0.0));
+    for (int i = 1; i < 60; ++i) evidence.Add(at(0.1 * i), config);
+    return evidence.level();
+  };
+  EXPECT_LE(level({5.0, 0.0}), config.max_level);
+  EXPECT_GT(level({0.0, 5.0}), config.max_level);
+}
+
 TEST(PairTable, FarClaimStartsNoPair) {
   const AssociationConfig config;
   PairTable table;

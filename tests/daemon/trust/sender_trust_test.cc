@@ -75,6 +75,7 @@ TEST(SenderTrust, EveryPieceOfEvidenceIsNeeded) {
   const Spoil spoils[] = {[](ValidationEvidence& e) { e.co_observations = 9; },
                           [](ValidationEvidence& e) { e.span_s = 1.4; },
                           [](ValidationEvidence& e) { e.is_nis_consistent = false; },
+                          [](ValidationEvidence& e) { e.is_level_plausible = false; },
                           [](ValidationEvidence& e) { e.margin = 3.9; },
                           [](ValidationEvidence& e) { e.is_assigned = false; },
                           [](ValidationEvidence& e) { e.are_sensors_sure = false; },
