@@ -25,9 +25,22 @@ constexpr double kSameSpeed_mps = 3.0;
 constexpr double kSameYaw_rad = FromDegrees(30.0);
 // The PRIORITY filter is never allowed this far from a LOCAL track that is being seen.
 constexpr double kApart_m = 0.7;
+// A vehicle of which a sensor has had but a part so lately may be misjudged by that part.
+constexpr double kPart_s = 0.5;
+constexpr double kPartPosition_m = 0.5;
+constexpr double kPartYaw_rad = FromDegrees(8.0);
+constexpr double kPartSpeed_mps = 0.7;
 
 double GateDistance(const Eigen::Vector2d& d, const Eigen::Matrix2d& S) {
   return d.dot(S.inverse() * d);
+}
+
+// What the measurements of a part of a vehicle may be wrong by for as long as it shows no more.
+void AddDoubt(StateMatrix& P) {
+  P(kX, kX) += kPartPosition_m * kPartPosition_m;
+  P(kY, kY) += kPartPosition_m * kPartPosition_m;
+  P(kYaw, kYaw) += kPartYaw_rad * kPartYaw_rad;
+  P(kSpeed, kSpeed) += kPartSpeed_mps * kPartSpeed_mps;
 }
 
 double PositionSigma(const KinematicState& state) {
@@ -48,12 +61,13 @@ Occluder FootprintOfVehicle(const PriorityVehicle& vehicle) {
           .position_sigma_m = vehicle.filter.position_sigma_m()};
 }
 
-bool IsInFullView(const SensorMeasurement& measurement, const BridgeConfig& config) {
+// The look had no more than a part of the vehicle; the rest lay behind something or out of view.
+bool IsOfAPart(const SensorMeasurement& measurement, const BridgeConfig& config) {
   if (const auto* radar = std::get_if<RadarMeasurement>(&measurement)) {
-    return radar->visible_share >= config.clear_share;
+    return radar->visible_share < config.part_share;
   }
   const auto& camera = std::get<CameraMeasurement>(measurement);
-  return !camera.left_is_cut && !camera.right_is_cut;
+  return camera.left_is_cut || camera.right_is_cut;
 }
 
 Visibility SeenAs(View view) {
@@ -71,6 +85,10 @@ Visibility SeenAs(View view) {
 
 void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& map) {
   sensed_stamp_ = frame.stamp;
+  parts_.clear();
+  for (const Sensed& sensed : sensed_) {
+    if (sensed.last_part) parts_.emplace_back(sensed.track.id, *sensed.last_part);
+  }
   sensed_.clear();
   for (const LocalTrack& track : frame.tracks) {
     if (!track.is_confirmed) continue;
@@ -82,7 +100,19 @@ void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& 
         pairs_.pairs(), [&](const PairTable::Pair& pair) { return pair.track_id == track.id; });
     const bool is_sure = has_pair && AreSensorsSure(track, frame, map, settings_->vehicle,
                                                     settings_->priority.sensor_support);
-    sensed_.push_back({track, is_sure, is_hit});
+    Sensed& sensed = sensed_.emplace_back(Sensed{track, is_sure, is_hit, {}});
+    for (const auto& [id, last_part] : parts_) {
+      if (id == track.id) sensed.last_part = last_part;
+    }
+    for (const SensorUpdate& update : frame.updates) {
+      if (update.track_id != track.id) continue;
+      if (IsOfAPart(update.measurement, settings_->priority.bridge)) {
+        sensed.last_part = frame.stamp;
+      }
+    }
+    const bool is_partial =
+        sensed.last_part && ToSeconds(frame.stamp - *sensed.last_part) <= kPart_s;
+    if (is_partial) AddDoubt(sensed.track.state_O.covariance);
   }
 }
 
@@ -102,6 +132,7 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
     vehicle.is_supported = false;
     vehicle.regained_hits = 0;
     vehicle.regaining_id = 0;
+    vehicle.elsewhere_id = 0;
     vehicle.empty = {};
     link->trust.OnSensorsLost();
   }
@@ -143,7 +174,6 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
   const LocalTrack& track = sensed.track;
   vehicle.extent = track.extent;
   const Extent extent = track.ModelExtent();
-  bool is_clear = false;
   for (const SensorUpdate& update : frame.updates) {
     if (update.track_id != track.id) continue;
     const StateVector x = vehicle.filter.kinematics().mean;
@@ -158,7 +188,6 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
                                *camera);
     }
     if (linear) vehicle.filter.Update(*linear);
-    is_clear = is_clear || IsInFullView(update.measurement, settings_->priority.bridge);
   }
   vehicle.last_radar = track.last_radar;
   vehicle.last_camera = track.last_camera;
@@ -168,14 +197,14 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
   if (!vehicle.is_supported) return;
   vehicle.existence = track.existence;
   vehicle.last_support = frame.stamp;
-  vehicle.coast = SensorCoast(track.state_O, frame.stamp);
-  if (is_clear) vehicle.clear_coast = vehicle.coast;
+  vehicle.coast = Coast(track.state_O, frame.stamp);
   vehicle.empty.OnHit();
   // V2V never moves a vehicle that the sensors see: where the two have come apart, LOCAL is right.
   const Eigen::Vector2d apart = vehicle.filter.mean().head<2>() - track.state_O.mean.head<2>();
   if (apart.norm() > kApart_m + 4.0 * PositionSigma(track.state_O)) {
     vehicle.filter.ResetVehicle(track.state_O);
   }
+  vehicle.agreed = Coast(vehicle.filter.kinematics(), frame.stamp);
 }
 
 // A vehicle comes back as its own LOCAL track, or as the nearest new one that nobody holds.
@@ -217,14 +246,15 @@ void PriorityPerception::LookForReturn(PriorityVehicle& vehicle, Timestamp stamp
   vehicle.is_supported = true;
   vehicle.visibility = Visibility::kVisible;
   vehicle.last_support = stamp;
-  vehicle.coast = vehicle.clear_coast = SensorCoast(best->track.state_O, stamp);
+  vehicle.coast = Coast(best->track.state_O, stamp);
+  vehicle.agreed = Coast(vehicle.filter.kinematics(), stamp);
   vehicle.regaining_id = 0;
   pairs_.SetIncumbent(vehicle.sender, best->track.id);
 }
 
 // The real vehicle seen elsewhere: a new track that is where the sensors alone would have expected
 // it, moves like it, and is not where the bridge is.
-std::optional<Finding> PriorityPerception::Contradiction(const PriorityVehicle& vehicle,
+std::optional<Finding> PriorityPerception::Contradiction(PriorityVehicle& vehicle,
                                                          Timestamp stamp) const {
   const BridgeConfig& config = settings_->priority.bridge;
   if (vehicle.regaining_id != 0 && ToSeconds(stamp - vehicle.last_regain) <= kPatience_s) {
@@ -254,6 +284,13 @@ std::optional<Finding> PriorityPerception::Contradiction(const PriorityVehicle& 
       return pair.track_id == track.id && pair.sender != vehicle.sender && pair.is_assigned;
     });
     if (is_somebody_else) continue;
+    // One hit may be anything, on a track that coasts above all.
+    const bool continues = vehicle.elsewhere_id == track.id &&
+                           ToSeconds(stamp - vehicle.last_elsewhere) <= kPatience_s;
+    vehicle.elsewhere_hits = continues ? vehicle.elsewhere_hits + 1 : 1;
+    vehicle.elsewhere_id = track.id;
+    vehicle.last_elsewhere = stamp;
+    if (vehicle.elsewhere_hits < config.regain_hits) return std::nullopt;
     return Finding{"seen_elsewhere", Verdict::kWithdraw, "distance_m", apart_m,
                    config.contradiction_m};
   }
@@ -274,6 +311,8 @@ void PriorityPerception::LookAtPlace(PriorityVehicle& vehicle, const LocalFrame&
   if (const auto probability =
           ClearDetection(footprint, frame, map, settings_->vehicle, config.least_detection)) {
     vehicle.empty.OnMiss(frame.stamp, *probability, config);
+  } else {
+    vehicle.empty.OnCovered();
   }
 }
 

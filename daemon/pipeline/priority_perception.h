@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "daemon/alignment/alignment.h"
@@ -80,9 +81,10 @@ class PriorityPerception {
   };
   // A LOCAL track as of the newest frame.
   struct Sensed {
-    LocalTrack track;
+    LocalTrack track;      // Known by a part only: with more doubt than LOCAL itself has.
     bool is_sure = false;  // The sensors alone are sure enough for PRIORITY.
     bool is_hit = false;   // Given a measurement in that frame.
+    std::optional<Timestamp> last_part;  // Last look that had but a part of it.
   };
   struct Settings {
     PriorityConfig priority;
@@ -103,7 +105,7 @@ class PriorityPerception {
                    Outputs& outputs);
   void TakeSensorUpdates(PriorityVehicle& vehicle, const Sensed& sensed, const LocalFrame& frame);
   void LookForReturn(PriorityVehicle& vehicle, Timestamp stamp);
-  std::optional<Finding> Contradiction(const PriorityVehicle& vehicle, Timestamp stamp) const;
+  std::optional<Finding> Contradiction(PriorityVehicle& vehicle, Timestamp stamp) const;
   void LookAtPlace(PriorityVehicle& vehicle, const LocalFrame& frame, const VisibilityMap& map);
 
   // Claim.
@@ -124,6 +126,7 @@ class PriorityPerception {
   std::vector<Link> links_;     // By sender.
   std::vector<Sensed> sensed_;  // By LOCAL id; all tracks of the newest frame.
   Timestamp sensed_stamp_{};
+  std::vector<std::pair<std::uint64_t, Timestamp>> parts_;  // Work space of Remember().
   PairTable pairs_;
   std::vector<PriorityVehicle> vehicles_;  // By id; id 0 = ended in this step.
   PaperList paper_;

@@ -15,22 +15,21 @@ double BridgeBudget_s(double co_observed_s, const BridgeConfig& config) {
   return std::min(config.most_s, std::max(config.least_s, config.base_s + co_observed_s));
 }
 
-SensorCoast::SensorCoast(const KinematicState& seen, Timestamp stamp)
+Coast::Coast(const KinematicState& seen, Timestamp stamp)
     : state_(seen),
       stamp_(stamp),
-      taken_(stamp),
       yaw_sigma_rad_(std::sqrt(std::max(0.0, seen.covariance(kYaw, kYaw)))),
       speed_sigma_mps_(std::sqrt(std::max(0.0, seen.covariance(kSpeed, kSpeed)))) {}
 
-void SensorCoast::PredictTo(Timestamp stamp, const MotionNoise& motion) {
+void Coast::PredictTo(Timestamp stamp, const MotionNoise& motion) {
   const double dt_s = ToSeconds(stamp - stamp_);
   if (!(dt_s > 0.0)) return;
   PredictCtra(state_, dt_s, motion);
   stamp_ = stamp;
 }
 
-bool SensorCoast::Reaches(const Eigen::Vector2d& p_O, double elapsed_s,
-                          const BridgeConfig& config) const {
+bool Coast::Reaches(const Eigen::Vector2d& p_O, double elapsed_s,
+                    const BridgeConfig& config) const {
   const Eigen::Vector2d d = p_O - state_.mean.head<2>();
   const double c = std::cos(state_.mean[kYaw]);
   const double s = std::sin(state_.mean[kYaw]);
@@ -49,7 +48,7 @@ void EmptyPlace::OnMiss(Timestamp stamp, double detection_probability, const Bri
   if (last_look_ && ToSeconds(stamp - *last_look_) < config.look_s) return;
   last_look_ = stamp;
   const double p_d = std::clamp(detection_probability, config.least_detection, 0.99);
-  log_ratio_ += std::log((1.0 - p_d) / (1.0 - config.false_detection));
+  log_ratio_ += std::log((1.0 - (1.0 - config.clear_doubt) * p_d) / (1.0 - config.false_detection));
 }
 
 }  // namespace v2vouch

@@ -25,12 +25,12 @@ struct BridgeConfig {
   double reach_along_mps2 = 2.5;   ///< ... + half of this t^2,
   double reach_across_m = 1.5;     ///< across ...
   double reach_across_mps2 = 3.0;  ///< ... + half of this t^2: an honest turn stays inside.
-  double clear_share = 0.6;        ///< So much of a vehicle visible is a look in full view; ...
-  double max_clear_age_s = 3.0;    ///< ... the last one counts so long before the last hit.
+  double part_share = 0.6;         ///< Less of a vehicle visible: measured by a part of it.
   int max_misfits = 3;             ///< Claims in a row that do not fit the bridge end it.
   double look_s = 0.3;             ///< C11: at most one look at a place per this time.
   double least_detection = 0.5;    ///< C11: floor of the detection probability.
   double false_detection = 0.05;   ///< C11: chance of a hit where nothing is.
+  double clear_doubt = 0.15;       ///< C11: chance that what the map calls clear is covered.
   double empty_log_ratio = -4.6;   ///< C11: the place is empty; withdraw.
   double contradiction_m = 5.0;    ///< The real vehicle seen this far from the bridge ends it.
 
@@ -48,12 +48,12 @@ struct BridgeConfig {
     a.Field("reach_along_mps2", reach_along_mps2, {.at_least = 0.0, .at_most = 20.0});
     a.Field("reach_across_m", reach_across_m, {.at_least = 0.0, .at_most = 20.0});
     a.Field("reach_across_mps2", reach_across_mps2, {.at_least = 0.0, .at_most = 20.0});
-    a.Field("clear_share", clear_share, {.at_least = 0.0, .at_most = 1.0});
-    a.Field("max_clear_age_s", max_clear_age_s, {.at_least = 0.0, .at_most = 30.0});
+    a.Field("part_share", part_share, {.at_least = 0.0, .at_most = 1.0});
     a.Field("max_misfits", max_misfits, {.at_least = 1, .at_most = 100});
     a.Field("look_s", look_s, {.above = 0.01, .at_most = 5.0});
     a.Field("least_detection", least_detection, {.above = 0.0, .below = 1.0});
     a.Field("false_detection", false_detection, {.at_least = 0.0, .below = 0.5});
+    a.Field("clear_doubt", clear_doubt, {.at_least = 0.0, .below = 1.0});
     a.Field("empty_log_ratio", empty_log_ratio, {.at_least = -100.0, .below = 0.0});
     a.Field("contradiction_m", contradiction_m, {.above = 0.5, .at_most = 50.0});
   }
@@ -62,15 +62,14 @@ struct BridgeConfig {
 /// T = min(most, base + co-observed), at least `least`.
 double BridgeBudget_s(double co_observed_s, const BridgeConfig& config);
 
-/// A vehicle as the sensors alone knew it, carried on without V2V. Copyable, fixed size.
-class SensorCoast {
+/// A vehicle as it was known when it was last seen, carried on without V2V. Copyable, fixed size.
+class Coast {
  public:
-  SensorCoast() = default;
-  SensorCoast(const KinematicState& seen, Timestamp stamp);
+  Coast() = default;
+  Coast(const KinematicState& seen, Timestamp stamp);
 
   void PredictTo(Timestamp stamp, const MotionNoise& motion);
   [[nodiscard]] const KinematicState& state() const { return state_; }
-  [[nodiscard]] Timestamp taken() const { return taken_; }
 
   /// Whether the vehicle can be at `p_O`, `elapsed_s` after a sensor last saw it: inside an ellipse
   /// round the coast, along and across its direction,
@@ -85,18 +84,23 @@ class SensorCoast {
  private:
   KinematicState state_;
   Timestamp stamp_{};
-  Timestamp taken_{};
   double yaw_sigma_rad_ = 0.0;
   double speed_sigma_mps_ = 0.0;
 };
 
-/// Negative evidence (C11): how often the claimed place was in clear view and nothing was there.
+/// Negative evidence (C11): how often in a row the claimed place was in clear view and nothing was
+/// there. A map that calls a place covered now and clear then knows little of it, so a look that is
+/// not clear starts the run again.
+///
+///     log ratio = sum of ln [ (1 - (1 - clear_doubt) P_D) / (1 - false_detection) ]
+///
 /// Copyable, fixed size.
 class EmptyPlace {
  public:
   /// One look in clear view without a detection; counted at most once per look_s.
   void OnMiss(Timestamp stamp, double detection_probability, const BridgeConfig& config);
   void OnHit() { log_ratio_ = 0.0; }
+  void OnCovered() { log_ratio_ = 0.0; }
   [[nodiscard]] double log_ratio() const { return log_ratio_; }
 
  private:

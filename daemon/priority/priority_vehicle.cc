@@ -8,15 +8,13 @@ namespace v2vouch {
 void PriorityVehicle::PredictTo(Timestamp stamp, const PriorityFilterConfig& config) {
   filter.PredictTo(stamp, config);
   coast.PredictTo(stamp, config.motion);
-  clear_coast.PredictTo(stamp, config.motion);
+  agreed.PredictTo(stamp, config.motion);
 }
 
 bool PriorityVehicle::CanReach(const Eigen::Vector2d& p_O, Timestamp now,
                                const BridgeConfig& config) const {
   const double elapsed_s = ToSeconds(now - last_support);
-  if (coast.Reaches(p_O, elapsed_s, config)) return true;
-  const double age_s = ToSeconds(last_support - clear_coast.taken());
-  return age_s <= config.max_clear_age_s && clear_coast.Reaches(p_O, elapsed_s, config);
+  return coast.Reaches(p_O, elapsed_s, config) || agreed.Reaches(p_O, elapsed_s, config);
 }
 
 KinematicState PriorityVehicle::StateAt(Timestamp at, const PriorityFilterConfig& config) const {

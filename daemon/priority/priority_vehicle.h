@@ -23,14 +23,17 @@ struct PriorityVehicle {
   Timestamp handover{};                   ///< ... until then.
   Timestamp start{};
   PriorityFilter filter;
-  SensorCoast coast{};        ///< From the last sensor support.
-  SensorCoast clear_coast{};  ///< From the last look that had it in full view.
+  Coast coast{};   ///< LOCAL at the last sensor support.
+  Coast agreed{};  ///< The fused state then: what sensors and sender agreed upon.
 
   bool is_supported = true;  ///< Sensors see it; false: bridged.
   Timestamp last_support{};
   int regained_hits = 0;           ///< Hits since support was lost.
   std::uint64_t regaining_id = 0;  ///< LOCAL track that may be it come back; 0 = none.
   Timestamp last_regain{};         ///< Of the last such hit.
+  int elsewhere_hits = 0;          ///< Hits in a row of a track that contradicts the bridge.
+  std::uint64_t elsewhere_id = 0;  ///< That track; 0 = none.
+  Timestamp last_elsewhere{};      ///< Of the last such hit.
   double co_observed_s = 0.0;      ///< Sensors and sender together.
 
   Timestamp last_v2v{};
@@ -51,9 +54,11 @@ struct PriorityVehicle {
   /// The vehicle at `at`, a copy; a little before the filter's own time is allowed.
   [[nodiscard]] KinematicState StateAt(Timestamp at, const PriorityFilterConfig& config) const;
 
-  /// Whether it can be at `p_O` at `now` by what the sensors knew when they lost it. A vehicle that
-  /// slips behind something is measured by ever smaller parts, which drag its direction: either
-  /// coast may be the better one.
+  /// Whether it can be at `p_O` at `now` by what was known when the sensors lost it. A vehicle that
+  /// slips behind something is measured by ever smaller parts, which drag LOCAL's direction by 15
+  /// to 30 degrees; a fused state that the sender has led astray is the other danger. So either
+  /// coast will do: the one is out of the sender's reach, the other differed from LOCAL by no more
+  /// than the trust checks allow.
   [[nodiscard]] bool CanReach(const Eigen::Vector2d& p_O, Timestamp now,
                               const BridgeConfig& config) const;
 

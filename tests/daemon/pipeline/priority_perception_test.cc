@@ -300,6 +300,39 @@ TEST(PriorityPerception, GhostIsNeverPublished) {
   }
 }
 
+// Two cars in a queue, 5.5 m from centre to centre; LOCAL has the first, the second talks.
+TEST(PriorityPerception, StandingNeighbourIsNotTheCarInFront) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Scene scene(seed);
+    scene.cars = {{.local_id = 7, .p = {40.0, 3.5}, .yaw_rad = 0.5 * kPi, .speed_mps = 0.0}};
+    scene.Run(15.0, [&] {
+      scene.Honest(1, {0.0, -5.5});
+      EXPECT_TRUE(scene.Priority().empty()) << "seed " << seed;
+    });
+  }
+}
+
+// A new LOCAL track, 6.5 m from the bridge but where the sensors alone may expect the hidden car: a
+// few stray hits say nothing, a run says that the car is there.
+TEST(PriorityPerception, StrayHitsElsewhereEndNoBridge) {
+  for (const int hits : {3, 8}) {
+    Scene scene = Validated(7);
+    Hide(scene);
+    scene.Run(2.5, [&] { scene.Honest(1); });
+    scene.cars.push_back({.local_id = 8, .yaw_rad = kPi, .speed_mps = 5.0});
+    for (int i = 0; i < 20; ++i) {
+      scene.Move(kFrame_s);
+      scene.cars[1].p = scene.cars[0].p + Eigen::Vector2d(-6.5, 0.0);
+      scene.cars[1].is_seen = i < hits;
+      scene.Frame();
+      scene.Honest(1);
+    }
+    EXPECT_EQ(scene.Priority().size(), hits == 3 ? 1u : 0u) << hits;
+    EXPECT_EQ(scene.outputs.reports.empty(), hits == 3);
+    for (const auto& report : scene.outputs.reports) EXPECT_EQ(report.check, "seen_elsewhere");
+  }
+}
+
 TEST(PriorityPerception, PlaceInClearViewThatIsEmptyEndsTheBridgeWithinASecond) {
   Scene scene = Validated(2);
   scene.cars[0].is_seen = false;  // Gone, and nothing hides the place.

@@ -20,7 +20,7 @@ TEST(IsReachable, HonestTurnStaysInsideAndSidewaysFlightDoesNot) {
   KinematicState seen;
   seen.mean[kSpeed] = 10.0;
   seen.covariance = StateMatrix::Identity() * 1e-8;
-  const SensorCoast coast(seen, FromMicros(0));
+  const Coast coast(seen, FromMicros(0));
   // 3 m/s^2 across for 2 s = 6 m; the set allows 1.5 + 6.
   EXPECT_TRUE(coast.Reaches({0.0, 6.0}, 2.0, kConfig));
   EXPECT_FALSE(coast.Reaches({0.0, 8.0}, 2.0, kConfig));
@@ -33,42 +33,35 @@ TEST(IsReachable, DoubtOfTheDirectionWidensTheSet) {
   seen.covariance = StateMatrix::Identity() * 1e-8;
   seen.covariance(kYaw, kYaw) = 0.1 * 0.1;
   // 2 sigma x 10 m/s x 2 s = 4 m more than 7.5 m across.
-  const SensorCoast coast(seen, FromMicros(0));
+  const Coast coast(seen, FromMicros(0));
   EXPECT_TRUE(coast.Reaches({0.0, 11.0}, 2.0, kConfig));
   EXPECT_FALSE(coast.Reaches({0.0, 12.0}, 2.0, kConfig));
 }
 
 // A car drives straight on behind a lorry; what the sensors saw of it last, a sliver, had dragged
-// its direction by 25 degrees.
+// LOCAL's direction by 25 degrees, the fused state not.
 TEST(CanReach, StraightOnIsInsideWhenTheLastLooksWereOfASliver) {
-  KinematicState seen;
-  seen.mean[kSpeed] = 6.6;
-  seen.covariance = StateMatrix::Identity() * 1e-3;
-  const Timestamp lost = FromMicros(0) + FromSeconds(2.0);
-  PriorityVehicle vehicle{.filter = PriorityFilter(seen, lost, Eigen::Vector2d::Zero(),
-                                                   Eigen::Matrix2d::Identity(), 0.005,
-                                                   PriorityFilterConfig{})};
-  KinematicState sliver = seen;
-  sliver.mean[kX] = 2.0 * 6.6;
+  KinematicState fused;
+  fused.mean[kSpeed] = 6.6;
+  fused.covariance = StateMatrix::Identity() * 1e-3;
+  KinematicState sliver = fused;
   sliver.mean[kY] = 1.3;
   sliver.mean[kYaw] = FromDegrees(25.0);
-  vehicle.last_support = lost;
-  vehicle.coast = SensorCoast(sliver, lost);
-  vehicle.clear_coast = SensorCoast(seen, FromMicros(0));
+  const Timestamp lost = FromMicros(0);
   const PriorityFilterConfig filter;
   for (const double t_s : {0.5, 1.0, 2.0, 4.0}) {
-    PriorityVehicle later = vehicle;
+    PriorityVehicle vehicle{.filter = PriorityFilter(fused, lost, Eigen::Vector2d::Zero(),
+                                                     Eigen::Matrix2d::Identity(), 0.005, filter)};
+    vehicle.last_support = lost;
+    vehicle.coast = vehicle.agreed = Coast(sliver, lost);
     const Timestamp now = lost + FromSeconds(t_s);
-    later.coast.PredictTo(now, filter.motion);
-    later.clear_coast.PredictTo(now, filter.motion);
-    const Eigen::Vector2d straight_on(6.6 * (2.0 + t_s), 0.0);
-    EXPECT_TRUE(later.CanReach(straight_on, now, kConfig)) << t_s;
-    EXPECT_FALSE(later.CanReach({straight_on.x(), -4.0 - 2.0 * t_s * t_s}, now, kConfig)) << t_s;
-    // Too long ago to count.
-    later.clear_coast = SensorCoast(seen, lost - FromSeconds(kConfig.max_clear_age_s + 1.0));
-    later.clear_coast.PredictTo(now, filter.motion);
-    if (t_s > 1.0) continue;
-    EXPECT_FALSE(later.CanReach(straight_on, now, kConfig)) << t_s;
+    vehicle.PredictTo(now, filter);
+    const Eigen::Vector2d straight_on(6.6 * t_s, 0.0);
+    EXPECT_FALSE(vehicle.CanReach(straight_on, now, kConfig) && t_s <= 1.0) << t_s;
+    vehicle.agreed = Coast(fused, lost);
+    vehicle.PredictTo(now, filter);
+    EXPECT_TRUE(vehicle.CanReach(straight_on, now, kConfig)) << t_s;
+    EXPECT_FALSE(vehicle.CanReach({straight_on.x(), -4.0 - 2.0 * t_s * t_s}, now, kConfig)) << t_s;
   }
 }
 
@@ -83,6 +76,19 @@ TEST(EmptyPlace, AboutOneSecondOfClearViewIsEnough) {
   EXPECT_GE(t, 0.3);  // Never from one look.
   place.OnHit();
   EXPECT_EQ(place.log_ratio(), 0.0);
+}
+
+TEST(EmptyPlace, OnlyARunOfClearLooksCounts) {
+  EmptyPlace place;
+  for (int i = 0; i < 200; ++i) {  // 0.45 s of clear view, then something in the way, for 10 s.
+    const Timestamp now = FromMicros(0) + FromSeconds(0.05 * i);
+    if (i % 10 == 9) {
+      place.OnCovered();
+    } else {
+      place.OnMiss(now, 0.95, kConfig);
+    }
+    ASSERT_GT(place.log_ratio(), kConfig.empty_log_ratio) << i;
+  }
 }
 
 TEST(PriorityId, IsAFunctionOfTheLocalTrackAndFitsTheWire) {
