@@ -13,6 +13,8 @@ constexpr double ToDegrees(double radians) { return radians * (180.0 / kPi); }
 
 /// The same direction in (-pi, pi].
 inline double WrapAngle(double radians) {
+  // Most angles are wrapped already; std::remainder would give them back bit for bit, slowly.
+  if (radians > -kPi && radians <= kPi) return radians;
   const double wrapped = std::remainder(radians, 2.0 * kPi);
   return wrapped <= -kPi ? kPi : wrapped;
 }

@@ -20,6 +20,17 @@ TEST(WrapAngle, StaysInTheHalfOpenCircle) {
   EXPECT_NEAR(AngleDifference(-kPi + 0.01, kPi - 0.01), 0.02, 1e-12);
 }
 
+// Angles that are wrapped already take a short way.
+TEST(WrapAngle, GivesWhatTheRemainderGivesBitForBit) {
+  Random random(7);
+  for (int i = 0; i < 20'000; ++i) {
+    const double angle = i < 10'000 ? random.Uniform(-kPi, kPi) : random.Uniform(-40.0, 40.0);
+    EXPECT_EQ(WrapAngle(angle), std::remainder(angle, 2.0 * kPi)) << angle;
+  }
+  EXPECT_TRUE(std::signbit(WrapAngle(-0.0)));
+  EXPECT_TRUE(std::isnan(WrapAngle(std::nan(""))));
+}
+
 TEST(FromSeconds, RoundsToTheNearestMicrosecond) {
   EXPECT_EQ(FromSeconds(0.1).count(), 100000);
   EXPECT_EQ(FromSeconds(-1.4e-6).count(), -1);
