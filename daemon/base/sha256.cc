@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <bit>
 
-namespace v2vouch {
-namespace {
+#include "daemon/base/sha256_x86.h"
 
-// FIPS 180-4, 4.2.2: fractional parts of the cube roots of the first 64 primes.
-constexpr std::array<std::uint32_t, 64> kRound = {
+namespace v2vouch {
+
+constexpr std::array<std::uint32_t, 64> kSha256Rounds = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
     0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
     0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
@@ -18,26 +18,32 @@ constexpr std::array<std::uint32_t, 64> kRound = {
     0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
     0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
 
-}  // namespace
+Sha256::Sha256(Rounds rounds) : has_extensions_(rounds == Rounds::kFastest && HasShaExtensions()) {}
 
 void Sha256::Add(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const std::size_t filled = length_ % 64;
-    const std::size_t taken = std::min(bytes.size(), 64 - filled);
-    if (taken == 64) {  // A whole block need not be copied first.
-      Compress(bytes.data());
+    std::size_t taken = std::min(bytes.size(), 64 - filled);
+    if (taken == 64) {  // Whole blocks need not be copied first.
+      taken = bytes.size() / 64 * 64;
+      Compress(bytes.data(), taken / 64);
     } else {
       std::copy_n(bytes.begin(), taken, rest_.begin() + static_cast<std::ptrdiff_t>(filled));
-      if (filled + taken == 64) Compress(rest_.data());
+      if (filled + taken == 64) Compress(rest_.data(), 1);
     }
     length_ += taken;
     bytes = bytes.subspan(taken);
   }
 }
 
+void Sha256::Compress(const std::uint8_t* bytes, std::size_t blocks) {
+  if (has_extensions_) return CompressWithShaExtensions(state_, bytes, blocks);
+  for (; blocks > 0; --blocks, bytes += 64) CompressPlainly(bytes);
+}
+
 // FIPS 180-4, 6.2.2. The letters do not move from round to round: eight rounds name them eight
 // ways. Of the message schedule the last sixteen words are kept.
-void Sha256::Compress(const std::uint8_t* block) {
+void Sha256::CompressPlainly(const std::uint8_t* block) {
   std::array<std::uint32_t, 16> w;
   for (std::size_t t = 0; t < 16; ++t) {
     w[t] = (std::uint32_t{block[4 * t]} << 24) | (std::uint32_t{block[4 * t + 1]} << 16) |
@@ -63,7 +69,7 @@ void Sha256::Compress(const std::uint8_t* block) {
       }
     }
     for (std::size_t i = 0; i < 16; i += 8) {
-      const auto added = [&](std::size_t j) { return kRound[t + i + j] + w[i + j]; };
+      const auto added = [&](std::size_t j) { return kSha256Rounds[t + i + j] + w[i + j]; };
       round(a, b, c, d, e, f, g, h, added(0));
       round(h, a, b, c, d, e, f, g, added(1));
       round(g, h, a, b, c, d, e, f, added(2));
