@@ -52,7 +52,7 @@ Occluder FootprintOf(const LocalTrack& track) {
 }
 
 LocalPerception::LocalPerception(const PerceptionConfig& config)
-    : vehicle_(config.vehicle),
+    : vehicle_(std::make_shared<const VehicleConfig>(config.vehicle)),
       radar_preprocessor_(config.radar),
       visibility_(config.visibility, config.vehicle),
       tracker_(config.tracking, config.vehicle),
@@ -67,7 +67,7 @@ std::optional<Reason> LocalPerception::OnRadarScan(const RadarScan& scan,
   if (!ego) return Reason::kNoEgoMotion;
   const auto radar = static_cast<std::size_t>(scan.radar);
   if (!prepared.is_ready || prepared.ego != *ego) {
-    radar_preprocessor_.Process(scan, vehicle_.radars[radar], *ego, prepared.measurements);
+    radar_preprocessor_.Process(scan, vehicle_->radars[radar], *ego, prepared.measurements);
     prepared.ego = *ego;
     prepared.is_ready = true;
   }
@@ -88,7 +88,7 @@ std::optional<Reason> LocalPerception::OnCameraDetections(const CameraDetections
   const auto ego = odometry_.StateAt(detections.stamp);
   if (!ego) return Reason::kNoEgoMotion;
   const auto camera = static_cast<std::size_t>(detections.camera);
-  ProcessCamera(detections, vehicle_.cameras[camera], camera_measurements_);
+  ProcessCamera(detections, vehicle_->cameras[camera], camera_measurements_);
   tracker_.Predict(detections.stamp);
   Look(*ego);
   tracker_.UpdateCamera(detections.camera, *ego, camera_measurements_,
@@ -149,11 +149,11 @@ Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoS
   const auto index = static_cast<std::size_t>(sensor);
   double full = 0.0;
   if (is_radar) {
-    const RadarConfig& radar = vehicle_.radars[index];
+    const RadarConfig& radar = vehicle_->radars[index];
     full = radar.detection_probability *
            RangeFade(DistanceToSensor(ego, radar.x_m, radar.y_m, track), radar.max_range_m);
   } else {
-    const CameraConfig& camera = vehicle_.cameras[index];
+    const CameraConfig& camera = vehicle_->cameras[index];
     full = camera.detection_probability *
            RangeFade(DistanceToSensor(ego, camera.x_m, camera.y_m, track), camera.max_range_m);
   }
@@ -195,14 +195,14 @@ bool LocalPerception::IsRadarAlive(int radar) const {
   const auto index = static_cast<std::size_t>(radar);
   return last_radar_[index] != Timestamp{} &&
          newest_ - last_radar_[index] <=
-             FromSeconds(kSilentPeriods * vehicle_.radars[index].period_s);
+             FromSeconds(kSilentPeriods * vehicle_->radars[index].period_s);
 }
 
 bool LocalPerception::IsCameraAlive(int camera) const {
   const auto index = static_cast<std::size_t>(camera);
   return last_camera_[index] != Timestamp{} &&
          newest_ - last_camera_[index] <=
-             FromSeconds(kSilentPeriods * vehicle_.cameras[index].period_s);
+             FromSeconds(kSilentPeriods * vehicle_->cameras[index].period_s);
 }
 
 }  // namespace v2vouch

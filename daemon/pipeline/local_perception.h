@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "daemon/base/reason.h"
+#include "daemon/base/scratch.h"
 #include "daemon/data/track.h"
 #include "daemon/odometry/odometry.h"
 #include "daemon/pipeline/perception_config.h"
@@ -56,17 +58,17 @@ class LocalPerception {
                                               const LocalTrack& track) const;
   void Finish(const EgoState& ego, LocalFrame& frame);
 
-  VehicleConfig vehicle_;
+  std::shared_ptr<const VehicleConfig> vehicle_;
   EgoOdometry odometry_;
   RadarPreprocessor radar_preprocessor_;
   VisibilityMap visibility_;
   Tracker tracker_;
   Timestamp newest_{};
   std::vector<Timestamp> last_radar_, last_camera_;
-  // Scratch, meaningless between frames.
-  std::vector<CameraMeasurement> camera_measurements_;
-  std::vector<Occluder> occluders_;
-  std::vector<char> radar_alive_, camera_alive_;
+  // Working memory of one frame.
+  Scratch<std::vector<CameraMeasurement>> camera_measurements_;
+  Scratch<std::vector<Occluder>> occluders_;
+  Scratch<std::vector<char>> radar_alive_, camera_alive_;
 };
 
 /// The footprint of a track as the visibility map wants it.

@@ -103,7 +103,9 @@ std::uint64_t Tracker::PackId(Timestamp stamp, int sensor, int index) {
 }
 
 Tracker::Tracker(const TrackerConfig& config, const VehicleConfig& vehicle)
-    : config_(config), vehicle_(vehicle), settings_{config.motion, config.point_targets} {
+    : config_(config),
+      vehicle_(std::make_shared<const VehicleConfig>(vehicle)),
+      settings_{config.motion, config.point_targets} {
   for (int rows = 1; rows <= Linearized::kMaxRows; ++rows) {
     gate_[static_cast<std::size_t>(rows)] = ChiSquareQuantile(config.gate_probability, rows);
   }
@@ -262,7 +264,7 @@ void Tracker::PrepareRadar(const RadarLook& look, std::span<const RadarMeasureme
 void Tracker::UpdateRadar(int radar, const EgoState& ego,
                           std::span<const RadarMeasurement> measurements,
                           const DetectabilityOf& detectability) {
-  const RadarLook look{ego, vehicle_.radars[static_cast<std::size_t>(radar)]};
+  const RadarLook look{ego, vehicle_->radars[static_cast<std::size_t>(radar)]};
   updates_.clear();
   costs_.clear();
   pairs_.clear();
@@ -368,7 +370,7 @@ void Tracker::PrepareCamera(const CameraLook& look,
 void Tracker::UpdateCamera(int camera, const EgoState& ego,
                            std::span<const CameraMeasurement> measurements,
                            const DetectabilityOf& detectability) {
-  const CameraLook look{ego, vehicle_.cameras[static_cast<std::size_t>(camera)]};
+  const CameraLook look{ego, vehicle_->cameras[static_cast<std::size_t>(camera)]};
   updates_.clear();
   costs_.clear();
   pairs_.clear();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "daemon/assignment/assignment.h"
 #include "daemon/base/angle.h"
 #include "daemon/base/reason.h"
+#include "daemon/base/scratch.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/track.h"
 #include "daemon/data/vehicle.h"
@@ -230,7 +232,7 @@ class Tracker {
   void RemoveDead();
 
   TrackerConfig config_;
-  VehicleConfig vehicle_;
+  std::shared_ptr<const VehicleConfig> vehicle_;
   FilterSettings settings_;
   std::array<double, Linearized::kMaxRows + 1> gate_{};
   Timestamp now_{};
@@ -243,17 +245,17 @@ class Tracker {
   std::vector<PoseUpdate> pose_updates_;
   std::vector<Reason> failures_;
 
-  // Scratch of one update, kept for its memory.
-  Candidates candidates_;
-  PlaceIndex places_;
-  std::vector<RadarMeasurement> joined_;
-  std::vector<double> detection_, missing_, missed_, lone_;
-  std::vector<Detectability> seen_;
-  std::vector<SparsePair> costs_;
-  std::vector<GatedPair> pairs_;
-  std::vector<int> assigned_, owner_;
-  ClusteredAssignmentSolver solver_;
-  AssociationMarginals marginals_;
+  // Working memory of one update.
+  Scratch<Candidates> candidates_;
+  Scratch<PlaceIndex> places_;
+  Scratch<std::vector<RadarMeasurement>> joined_;
+  Scratch<std::vector<double>> detection_, missing_, missed_, lone_;
+  Scratch<std::vector<Detectability>> seen_;
+  Scratch<std::vector<SparsePair>> costs_;
+  Scratch<std::vector<GatedPair>> pairs_;
+  Scratch<std::vector<int>> assigned_, owner_;
+  Scratch<ClusteredAssignmentSolver> solver_;
+  Scratch<AssociationMarginals> marginals_;
 };
 
 }  // namespace v2vouch
