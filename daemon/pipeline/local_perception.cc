@@ -34,6 +34,19 @@ bool IsJustSeen(const LocalTrack& track, Timestamp now) {
   return is_fresh(track.last_radar) || is_fresh(track.last_camera);
 }
 
+Visibility VisibilityOf(View overall) {
+  switch (overall) {
+    case View::kClear:
+    case View::kUnknown:
+      return Visibility::kVisible;
+    case View::kOccluded:
+      return Visibility::kHidden;
+    case View::kOutOfView:
+      break;
+  }
+  return Visibility::kOutOfView;
+}
+
 double DistanceToSensor(const EgoState& ego, double x_m, double y_m, const LocalTrack& track) {
   const Point<Odometry> p_OS = ego.X_OB * Point<Body>{x_m, y_m};
   return std::hypot(track.state_O.mean[kX] - p_OS.x_m, track.state_O.mean[kY] - p_OS.y_m);
@@ -125,28 +138,24 @@ Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoS
                                                const LocalTrack& track) const {
   const Occluder footprint = FootprintOf(track);
   const bool is_radar = kind == Kind::kRadar;
-  const VisibilityMap::Answer answer =
-      is_radar ? visibility_.AskRadar(sensor, footprint) : visibility_.AskCamera(sensor, footprint);
   Detectability result;
-  switch (answer.overall) {
-    case View::kClear:
-    case View::kUnknown:
-      result.visibility = Visibility::kVisible;
-      break;
-    case View::kOccluded:
-      result.visibility = Visibility::kHidden;
-      break;
-    case View::kOutOfView:
-      result.visibility = Visibility::kOutOfView;
-      break;
+  SensorView seen;
+  if (IsJustSeen(track, ego.stamp)) {  // Then the other sensors need not be asked.
+    result.visibility = Visibility::kVisible;
+    seen = is_radar ? visibility_.FromRadar(sensor, footprint)
+                    : visibility_.FromCamera(sensor, footprint);
+  } else {
+    const VisibilityMap::Answer answer = is_radar ? visibility_.AskRadar(sensor, footprint)
+                                                  : visibility_.AskCamera(sensor, footprint);
+    seen = answer.sensor;
+    result.visibility = VisibilityOf(answer.overall);
   }
-  if (IsJustSeen(track, ego.stamp)) result.visibility = Visibility::kVisible;
 
-  const SensorView seen = answer.sensor;
   result.visible_share = seen.uncovered;
   result.left_is_covered = seen.left_is_covered;
   result.right_is_covered = seen.right_is_covered;
   const auto index = static_cast<std::size_t>(sensor);
+  if (seen.view == View::kOutOfView) return result;  // With probability 0.
   double full = 0.0;
   if (is_radar) {
     const RadarConfig& radar = vehicle_->radars[index];
@@ -168,7 +177,6 @@ Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoS
       result.probability = std::min(full, kHiddenDetection);
       break;
     case View::kOutOfView:
-      result.probability = 0.0;
       break;
   }
   return result;

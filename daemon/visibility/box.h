@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -58,15 +60,38 @@ struct Silhouette {
     nearest_m = (from_box.cwiseAbs() - half).cwiseMax(0.0).norm();
     right_rad = std::numeric_limits<double>::infinity();
     left_rad = -right_rad;
+    // Only the outermost corners' angles are asked for. Ahead, the tangent tells which they are;
+    // corners that rounding might swap are all asked.
+    struct Corner {
+      double aside;
+      double ahead;
+      double tangent;
+    };
+    std::array<Corner, 4> corners;
+    std::size_t count = 0;
+    double lowest = right_rad;
+    double highest = left_rad;
+    bool is_ahead = true;
     for (const double along : {-half.x(), half.x()}) {
       for (const double across : {-half.y(), half.y()}) {
         const Eigen::Vector2d corner =
             d + Eigen::Vector2d(c * along - s * across, s * along + c * across);
-        const double angle =
-            std::atan2(sight.x() * corner.y() - sight.y() * corner.x(), sight.dot(corner));
-        right_rad = std::min(right_rad, angle);
-        left_rad = std::max(left_rad, angle);
+        Corner& seen_at = corners[count++];
+        seen_at.aside = sight.x() * corner.y() - sight.y() * corner.x();
+        seen_at.ahead = sight.dot(corner);
+        seen_at.tangent = seen_at.aside / seen_at.ahead;
+        is_ahead = is_ahead && seen_at.ahead > 0.0;
+        lowest = std::min(lowest, seen_at.tangent);
+        highest = std::max(highest, seen_at.tangent);
       }
+    }
+    const double low_tie = lowest + 1e-9 * (1.0 + std::abs(lowest));
+    const double high_tie = highest - 1e-9 * (1.0 + std::abs(highest));
+    for (const Corner& corner : corners) {
+      if (is_ahead && corner.tangent > low_tie && corner.tangent < high_tie) continue;
+      const double angle = std::atan2(corner.aside, corner.ahead);
+      right_rad = std::min(right_rad, angle);
+      left_rad = std::max(left_rad, angle);
     }
   }
 

@@ -345,16 +345,18 @@ SensorView VisibilityMap::See(const Sensor& sensor, const Box& footprint) const 
     if (!is_inside && !sees(a)) continue;
 
     double covered = 0.0;
-    if (count > 0) {
-      const double target_m = target.EntryAlong(ray, centre_m);
-      for (std::size_t i = 0; i < count; ++i) {
-        const Silhouette& box = in_the_way[i];
-        const double entry_m = box.EntryAlong(ray, box.centre_m);
-        const double within_m = std::min(a - box.right_rad, box.left_rad - a) * entry_m;
-        covered =
-            std::max(covered, Ramp(within_m, config_.margin_m + box.sigma_m) *
-                                  Ramp(target_m - entry_m, kDepthBlur_m + sigma_m + box.sigma_m));
-      }
+    double target_m = -1.0;  // Where the ray enters the footprint, once it is asked for.
+    for (std::size_t i = 0; i < count && covered < 1.0; ++i) {
+      const Silhouette& box = in_the_way[i];
+      const double blur_m = config_.margin_m + box.sigma_m;
+      const double inside_rad = std::min(a - box.right_rad, box.left_rad - a);
+      // A ray that passes the nearest point of the box by more than the blur passes all of it.
+      if (inside_rad * box.nearest_m < -1.001 * blur_m) continue;
+      if (target_m < 0.0) target_m = target.EntryAlong(ray, centre_m);
+      const double entry_m = box.EntryAlong(ray, box.centre_m);
+      covered =
+          std::max(covered, Ramp(inside_rad * entry_m, blur_m) *
+                                Ramp(target_m - entry_m, kDepthBlur_m + sigma_m + box.sigma_m));
     }
     double possibly = covered;
     if (has_static) {
