@@ -32,19 +32,23 @@ bool IsPoint(double length_m, double width_m) { return length_m < kPoint_m || wi
 using D = Dual<kStateSize + 2>;
 
 // The edges of a radar's field of view, where the box straddles them, in the box's axes.
-void CutByView(const RadarConfig& radar, double sensor_yaw_rad, const D& yaw, const D& px,
+// Returns whether there was one.
+bool CutByView(const RadarConfig& radar, double sensor_yaw_rad, const D& yaw, const D& px,
                const D& py, const Extent& extent, ReflectingBox<D>& box) {
-  if (radar.half_fov_rad >= 0.5 * kPi) return;
+  if (radar.half_fov_rad >= 0.5 * kPi) return false;
   const double middle = std::atan2(py.value, px.value);
   const double range = std::hypot(px.value, py.value);
   const double half = std::atan2(0.5 * std::hypot(extent.length_m, extent.width_m), range);
   const double off_axis = WrapAngle(middle - sensor_yaw_rad);
+  bool is_near_an_edge = false;
   for (const double side : {1.0, -1.0}) {
     if (side * off_axis + half < radar.half_fov_rad) continue;
     // Inside of the left edge is to its right, and the other way round.
     const D edge = D(sensor_yaw_rad + side * radar.half_fov_rad) - yaw;
     box.Cut({side * sin(edge), -side * cos(edge)});
+    is_near_an_edge = true;
   }
+  return is_near_an_edge;
 }
 
 // Distance to the front or rear of a long vehicle, where the radar stands before it: the mean of
@@ -110,8 +114,8 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
     const D ay = (s * px - c * py) / distance;
     ReflectingBox<D> box(ax, ay, distance, length, width);
     const auto whole = box.Reflect();
-    CutByView(radar, X_OR.yaw_rad(), yaw, px, py, extent, box);
-    const auto cut = box.Reflect();
+    const bool is_near_an_edge = CutByView(radar, X_OR.yaw_rad(), yaw, px, py, extent, box);
+    const auto cut = is_near_an_edge ? box.Reflect() : whole;
     is_cut = cut && cut->spread != whole->spread;
     const Reflections<D>& seen = cut ? *cut : *whole;
     ox = c * seen.along - s * seen.across;
