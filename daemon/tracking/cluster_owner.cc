@@ -70,7 +70,7 @@ bool Tracker::Owns(std::size_t track, const RadarLook& look, const RadarMeasurem
       std::min(2.0 * (std::sqrt(z.covariance(0, 0)) + z.range_m * std::sqrt(z.covariance(1, 1))),
                kMaxBlur_m);
   const Eigen::Vector2d from_point = p_O - filter.position_O();
-  Eigen::Vector2d velocity = filter.velocity_O();
+  Eigen::Vector2d turning = Eigen::Vector2d::Zero();
   if (filter.is_vehicle()) {
     const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-x[kYaw]) * from_point;
     const Extent& extent = tracks_[track].extent;
@@ -80,11 +80,12 @@ bool Tracker::Owns(std::size_t track, const RadarLook& look, const RadarMeasurem
     if (std::abs(inside.x()) > reach || std::abs(inside.y()) > 0.5 * extent.width_m + aside) {
       return false;
     }
-    velocity += x[kYawRate] * Eigen::Vector2d(-from_point.y(), from_point.x());
+    turning = x[kYawRate] * Eigen::Vector2d(-from_point.y(), from_point.x());
   } else if (z.is_static || from_point.norm() > kPointRadius_m + blur_m) {
     return false;
   }
   const Eigen::Vector2d line = (p_O - look.origin_O()).normalized();
+  const Eigen::Vector2d velocity = filter.velocity_O() + turning;
   const double slack = kRangeRateSlack_mps + 3.0 * std::sqrt(z.covariance(2, 2));
   return std::abs(line.dot(velocity) - z.ground_range_rate_mps) <= slack;
 }

@@ -12,12 +12,15 @@ constexpr double kRadialSigma_m = 0.15;
 
 }  // namespace
 
-Eigen::Vector2d RadarLook::origin_O() const {
-  return (ego.X_OB * Point<Body>{radar.x_m, radar.y_m}).vector();
-}
-Eigen::Vector2d CameraLook::origin_O() const {
-  return (ego.X_OB * Point<Body>{camera.x_m, camera.y_m}).vector();
-}
+RadarLook::RadarLook(const EgoState& ego_state, const RadarConfig& config)
+    : ego(ego_state),
+      radar(config),
+      origin_O_((ego.X_OB * Point<Body>{radar.x_m, radar.y_m}).vector()) {}
+
+CameraLook::CameraLook(const EgoState& ego_state, const CameraConfig& config)
+    : ego(ego_state),
+      camera(config),
+      origin_O_((ego.X_OB * Point<Body>{camera.x_m, camera.y_m}).vector()) {}
 
 Fix FixOf(const RadarLook& look, const RadarMeasurement& z) {
   const double bearing = z.azimuth_rad + look.radar.yaw_rad + look.ego.X_OB.yaw_rad();

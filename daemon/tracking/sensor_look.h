@@ -10,16 +10,24 @@
 
 namespace v2vouch {
 
-/// One radar or camera together with the ego's state at the moment it looked.
+/// One radar or camera together with the ego's state at the moment it looked; both outlive it.
 struct RadarLook {
+  RadarLook(const EgoState& ego_state, const RadarConfig& config);
   const EgoState& ego;
   const RadarConfig& radar;
-  [[nodiscard]] Eigen::Vector2d origin_O() const;
+  [[nodiscard]] const Eigen::Vector2d& origin_O() const { return origin_O_; }
+
+ private:
+  Eigen::Vector2d origin_O_;  // Every pair asks for it.
 };
 struct CameraLook {
+  CameraLook(const EgoState& ego_state, const CameraConfig& config);
   const EgoState& ego;
   const CameraConfig& camera;
-  [[nodiscard]] Eigen::Vector2d origin_O() const;
+  [[nodiscard]] const Eigen::Vector2d& origin_O() const { return origin_O_; }
+
+ private:
+  Eigen::Vector2d origin_O_;
 };
 
 /// Where a measurement alone puts the reflecting point, with its covariance, in O [m].
