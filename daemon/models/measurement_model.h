@@ -38,6 +38,9 @@ struct Linearized {
 /// those of the faces' middles in units of r; (.)+ and sgn are smoothed over about a degree, so
 /// that the Jacobian exists everywhere.
 /// @param p_OS the sensor seen from the centre, expressed in O [m].
+/// @param forward_O the vehicle's direction as a unit vector in O.
+Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, const Eigen::Vector2d& forward_O,
+                                 const Extent& extent);
 Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, double yaw_rad, const Extent& extent);
 
 /// Extent-aware radar model.

@@ -70,12 +70,17 @@ std::optional<D> NearEnd(const D& px, const D& py, const D& c, const D& s, const
 
 Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, double yaw_rad,
                                  const Extent& extent) {
+  return ReflectionOffset(p_OS, Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad)), extent);
+}
+
+Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, const Eigen::Vector2d& forward_O,
+                                 const Extent& extent) {
   const double range_m = p_OS.norm();
   if (range_m < kMinRange_m || IsPoint(extent.length_m, extent.width_m)) {
     return Eigen::Vector2d::Zero();
   }
-  const double c = std::cos(yaw_rad);
-  const double s = std::sin(yaw_rad);
+  const double c = forward_O.x();
+  const double s = forward_O.y();
   const double ax = (c * p_OS.x() + s * p_OS.y()) / range_m;
   const double ay = (c * p_OS.y() - s * p_OS.x()) / range_m;
   const ReflectingBox<double> box(ax, ay, range_m, extent.length_m, extent.width_m);
@@ -89,9 +94,10 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
   const Pose<Odometry, Radar> X_OR =
       ego.X_OB * Pose<Body, Radar>(radar.x_m, radar.y_m, radar.yaw_rad);
   // Velocity of the antenna: rear axle plus yaw rate x lever arm.
+  const Eigen::Matrix2d R_OB = ego.X_OB.rotation();
   const Eigen::Vector2d v_R_O =
-      ego.X_OB.rotation() * Eigen::Vector2d(ego.speed_mps - ego.yaw_rate_radps * radar.y_m,
-                                            ego.yaw_rate_radps * radar.x_m);
+      R_OB * Eigen::Vector2d(ego.speed_mps - ego.yaw_rate_radps * radar.y_m,
+                             ego.yaw_rate_radps * radar.x_m);
 
   const D px = D::Variable(x[kX] - X_OR.x_m(), kX);
   const D py = D::Variable(x[kY] - X_OR.y_m(), kY);
@@ -193,7 +199,7 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
     }
   }
   // The ego's own motion is measured too: its noise reaches every range rate.
-  const Eigen::Vector2d line_B = ego.X_OB.rotation().transpose() * line;
+  const Eigen::Vector2d line_B = R_OB.transpose() * line;
   const double lever = line_B.y() * radar.x_m - line_B.x() * radar.y_m;
   R(2, 2) +=
       std::pow(line_B.x() * ego.speed_sigma_mps, 2) + std::pow(lever * ego.yaw_rate_sigma_radps, 2);

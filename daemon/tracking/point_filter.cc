@@ -66,10 +66,10 @@ std::optional<PointModel> LinearizePoint(const Eigen::Vector4d& x, const RadarLo
   using D = Dual<4>;
   const Pose<Odometry, Radar> X_OR =
       look.ego.X_OB * Pose<Body, Radar>(look.radar.x_m, look.radar.y_m, look.radar.yaw_rad);
+  const Eigen::Matrix2d R_OB = look.ego.X_OB.rotation();
   const Eigen::Vector2d v_R_O =
-      look.ego.X_OB.rotation() *
-      Eigen::Vector2d(look.ego.speed_mps - look.ego.yaw_rate_radps * look.radar.y_m,
-                      look.ego.yaw_rate_radps * look.radar.x_m);
+      R_OB * Eigen::Vector2d(look.ego.speed_mps - look.ego.yaw_rate_radps * look.radar.y_m,
+                             look.ego.yaw_rate_radps * look.radar.x_m);
   const D qx = D::Variable(x[0] - X_OR.x_m(), 0);
   const D qy = D::Variable(x[1] - X_OR.y_m(), 1);
   const D vx = D::Variable(x[2] - v_R_O.x(), 2);
@@ -85,8 +85,8 @@ std::optional<PointModel> LinearizePoint(const Eigen::Vector4d& x, const RadarLo
   out.H.resize(3, 4);
   out.H << range.gradient, azimuth.gradient, range_rate.gradient;
   out.R = is_exact ? z.covariance : PointNoise(z, look.radar);
-  const Eigen::Vector2d line_B = look.ego.X_OB.rotation().transpose() *
-                                 Eigen::Vector2d(qx.value / range.value, qy.value / range.value);
+  const Eigen::Vector2d line_B =
+      R_OB.transpose() * Eigen::Vector2d(qx.value / range.value, qy.value / range.value);
   const double lever = line_B.y() * look.radar.x_m - line_B.x() * look.radar.y_m;
   out.R(2, 2) += std::pow(line_B.x() * look.ego.speed_sigma_mps, 2) +
                  std::pow(lever * look.ego.yaw_rate_sigma_radps, 2);

@@ -131,14 +131,17 @@ ExtendedState VehicleAt(const PointFilter& point, double yaw_rad, double yaw_sig
 
   // Offset in axes of O, with the sensor seen from the point instead of from the centre: both lie
   // on nearly the same line. The distance is stretched by half a width, where the centre is.
-  const auto offset_O = [&](double at_yaw_rad, const Extent& extent) -> Eigen::Vector2d {
+  const double range = std::max(p_SQ.norm(), 0.5);
+  const auto offset_O = [&](const Eigen::Vector2d& ahead, const Extent& extent) -> Eigen::Vector2d {
     if (settings.point_targets) return Eigen::Vector2d::Zero();
-    const double range = std::max(p_SQ.norm(), 0.5);
     const Eigen::Vector2d p_OS = -p_SQ * (1.0 + 0.5 * extent.width_m / range);
-    return Eigen::Rotation2D<double>(at_yaw_rad) * ReflectionOffset(p_OS, at_yaw_rad, extent);
+    Eigen::Matrix2d R_OT;
+    R_OT << ahead.x(), -ahead.y(), ahead.y(), ahead.x();
+    return R_OT * ReflectionOffset(p_OS, ahead, extent);
   };
   ExtendedState out;
-  const Eigen::Vector2d centre = point.position() - offset_O(yaw, size);
+  const Eigen::Vector2d offset = offset_O(forward, size);
+  const Eigen::Vector2d centre = point.position() - offset;
   const double speed = has_direction ? v.norm() : v.dot(forward);
   out.mean << centre, yaw, speed, 0.0, 0.0, size.length_m, size.width_m;
 
@@ -146,13 +149,17 @@ ExtendedState VehicleAt(const PointFilter& point, double yaw_rad, double yaw_sig
   Eigen::Matrix<double, ExtendedState::kSize, 7> J =
       Eigen::Matrix<double, ExtendedState::kSize, 7>::Zero();
   const double h = 1e-4;
-  const Eigen::Vector2d by_yaw = (offset_O(yaw + h, size) - offset_O(yaw - h, size)) / (2.0 * h);
+  const auto turned = [yaw](double by) {
+    return Eigen::Vector2d(std::cos(yaw + by), std::sin(yaw + by));
+  };
+  const Eigen::Vector2d by_yaw =
+      (offset_O(turned(h), size) - offset_O(turned(-h), size)) / (2.0 * h);
   Extent longer = size, wider = size;
   longer.length_m += h;
   wider.width_m += h;
   J.topLeftCorner<2, 2>().setIdentity();
-  J.block<2, 1>(0, 5) = -(offset_O(yaw, longer) - offset_O(yaw, size)) / h;
-  J.block<2, 1>(0, 6) = -(offset_O(yaw, wider) - offset_O(yaw, size)) / h;
+  J.block<2, 1>(0, 5) = -(offset_O(forward, longer) - offset) / h;
+  J.block<2, 1>(0, 6) = -(offset_O(forward, wider) - offset) / h;
   J.block<1, 2>(kSpeed, 2) = forward.transpose();
   J(ExtendedState::kLength, 5) = 1.0;
   J(ExtendedState::kWidth, 6) = 1.0;
@@ -170,7 +177,8 @@ ExtendedState VehicleAt(const PointFilter& point, double yaw_rad, double yaw_sig
   }
   P(5, 5) = size.length_sigma_m * size.length_sigma_m;
   P(6, 6) = size.width_sigma_m * size.width_sigma_m;
-  out.covariance = J * P * J.transpose();
+  const Eigen::Matrix<double, ExtendedState::kSize, 7> JP = J.lazyProduct(P);
+  out.covariance = JP.lazyProduct(J.transpose());
   out.covariance(kYawRate, kYawRate) = kInitialYawRateSigma_radps * kInitialYawRateSigma_radps;
   out.covariance(kAccel, kAccel) = kInitialAccelSigma_mps2 * kInitialAccelSigma_mps2;
   return out;
