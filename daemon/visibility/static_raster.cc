@@ -2,6 +2,7 @@
 #include "daemon/visibility/static_raster.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "daemon/base/angle.h"
 
@@ -52,8 +53,12 @@ std::size_t StaticRaster::BucketOf(Key key) {
 
 const StaticRaster::Cell* StaticRaster::Find(Key key) const {
   const Cell* bucket = &cells_[BucketOf(key) * kSlots];
+  // A wall's neighbours are searched at 32 places per hit: one comparison of 32 bits per cell.
+  const auto wanted = std::bit_cast<std::uint32_t>(key);
   for (std::size_t i = 0; i < kSlots; ++i) {
-    if (bucket[i].hits > 0 && bucket[i].key == key) return &bucket[i];
+    if (std::bit_cast<std::uint32_t>(bucket[i].key) == wanted && bucket[i].hits > 0) {
+      return &bucket[i];
+    }
   }
   return nullptr;
 }
