@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <variant>
 #include <vector>
 
+#include "daemon/base/sha256.h"
 #include "daemon/pipeline/perception.h"
 #include "daemon/pipeline/timeline.h"
 #include "tests/support/synthetic_drive.h"
@@ -183,6 +185,17 @@ void BM_LocalCheckpoint(benchmark::State& state) {
   }
 }
 BENCHMARK(BM_LocalCheckpoint)->Arg(10)->Arg(50)->Unit(benchmark::kMicrosecond);
+
+// The running digest over one list of ten tracks, 7 kB. Can afford 10 us: with the SHA extensions
+// it takes a fifth of that, without them twice.
+void BM_Digest(benchmark::State& state) {
+  const std::vector<std::uint8_t> list(7000, 0x5a);
+  Sha256 digest;
+  for (auto _ : state) digest.Add(list);
+  benchmark::DoNotOptimize(digest.Hex());
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(list.size()));
+}
+BENCHMARK(BM_Digest)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace v2vouch
