@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "daemon/tracking/tracker.h"
 
 namespace v2vouch {
@@ -7,6 +9,8 @@ namespace {
 // After the first, which is not asked. A radar sees mirror images behind rails and facades, where
 // it cannot see at all.
 constexpr int kClearHits = 2;
+// A range that only a camera's bottom edges give must be at least this good.
+constexpr double kMostGuess_m = 2.5;
 // What no picture shows although it should is a mirror image, or a vehicle that the camera is blind
 // for. Images come and go within tenths of a second.
 constexpr int kMissingPictures = 2;
@@ -27,9 +31,9 @@ bool Tracker::IsConvincing(std::size_t track) const {
     return false;
   }
   if (shown.camera_hits + hidden.moving_hits + hidden.pose_hits < 2) return false;
-  if (LargestSigma(hidden.filter.position_covariance()) > config_.max_position_sigma_m) {
-    return false;
-  }
+  const double most_m = hidden.has_range ? config_.max_position_sigma_m
+                                         : std::min(kMostGuess_m, config_.max_position_sigma_m);
+  if (LargestSigma(hidden.filter.position_covariance()) > most_m) return false;
   if (hidden.pose_hits > 0) return true;
   if (shown.camera_hits > 0) return shown.radar_hits > 0 || !hidden.is_far;
   if (hidden.clear_hits < kClearHits) return false;

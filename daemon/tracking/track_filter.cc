@@ -16,6 +16,9 @@ constexpr double kShownSigma_rad = 0.6;
 constexpr double kAssumedYawSigma_rad = 0.7;
 // Young tracks are linearised twice: range rate bends strongly over an uncertain heading.
 constexpr double kYoung_s = 0.7;
+// Lasting error of the reflection model, along the vehicle and in any direction.
+constexpr double kAlongFloor_m = 0.06;
+constexpr double kFloor_m = 0.04;
 // A silhouette wider than this shows a side, unless a lorry's.
 constexpr double kWidestCar_m = 3.2;
 
@@ -110,6 +113,14 @@ void TrackFilter::Show(const FilterSettings& settings, LocalTrack& track) const 
                                   : VehicleAt(point_, default_yaw_rad_, yaw_sigma,
                                               ClassExtent(object_class_), seen_from_, settings);
   track.state_O = state.kinematic();
+  if (!settings.point_targets) {
+    // Where on its body a vehicle reflects is much the same from scan to scan: that error of the
+    // model does not average out, and the filter cannot see it.
+    const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
+    track.state_O.covariance.topLeftCorner<2, 2>() +=
+        kAlongFloor_m * kAlongFloor_m * forward * forward.transpose() +
+        kFloor_m * kFloor_m * Eigen::Matrix2d::Identity();
+  }
   track.extent = state.extent();
 }
 

@@ -45,6 +45,7 @@ Json Full(const ListScore& score) {
   json["switch_halves"] = score.switch_halves;
   json["bound_missed_mean"] = Rounded(score.bound_missed_mean);
   json["bound_mean_second_look"] = Rounded(score.bound_mean_plain);
+  json["excess_missed_visible_share"] = Rounded(score.excess_missed_visible_share);
   json["excess_missed_share_second_look"] = Rounded(score.excess_missed_share_plain);
   json["localisation_all_rms_m"] = Rounded(score.localisation_all_rms_m);
   json["vehicle_seconds"] = Rounded(score.vehicle_seconds);

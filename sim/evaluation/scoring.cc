@@ -136,6 +136,8 @@ class Scorer {
     score_.bound_missed_seconds = score_.vehicle_seconds - held_seconds_;
     score_.excess_missed_share =
         held_seconds_ > 0.0 ? score_.excess_missed_seconds / held_seconds_ : 0.0;
+    score_.excess_missed_visible_share =
+        held_visible_seconds_ > 0.0 ? missed_visible_seconds_ / held_visible_seconds_ : 0.0;
     score_.excess_missed_share_plain =
         held_plain_seconds_ > 0.0 ? missed_plain_seconds_ / held_plain_seconds_ : 0.0;
     const auto rms = [](double sum, std::int64_t n) {
@@ -204,6 +206,10 @@ class Scorer {
       return;
     }
     held_seconds_ += settings_.period_s;
+    if (!truth.is_hidden) {
+      held_visible_seconds_ += settings_.period_s;
+      if (!is_matched) missed_visible_seconds_ += settings_.period_s;
+    }
     if (!is_matched) score_.excess_missed_seconds += settings_.period_s;
   }
 
@@ -256,6 +262,8 @@ class Scorer {
   double plain_sum_ = 0.0;
   double power_sum_ = 0.0;
   double held_seconds_ = 0.0;
+  double held_visible_seconds_ = 0.0;
+  double missed_visible_seconds_ = 0.0;
   double held_plain_seconds_ = 0.0;
   double missed_plain_seconds_ = 0.0;
   double visible_sum_ = 0.0;

@@ -95,11 +95,12 @@ struct ListScore {
   double vehicle_seconds = 0.0;
   double missed_seconds = 0.0;
   double bound_missed_seconds = 0.0;
-  double excess_missed_seconds = 0.0;      ///< Missed while the bound holds the vehicle.
-  double excess_missed_share = 0.0;        ///< Of the vehicle-seconds the bound holds.
-  double excess_missed_share_plain = 0.0;  ///< The same for the plain bound.
-  double localisation_rms_m = 0.0;         ///< Visible vehicles only (V2V: all).
-  double localisation_ratio = 0.0;         ///< Over the bound's RMS for the same pairs.
+  double excess_missed_seconds = 0.0;        ///< Missed while the bound holds the vehicle.
+  double excess_missed_share = 0.0;          ///< Of the vehicle-seconds the bound holds.
+  double excess_missed_visible_share = 0.0;  ///< The same while a sensor's ray reaches the vehicle.
+  double excess_missed_share_plain = 0.0;    ///< The same for the plain bound.
+  double localisation_rms_m = 0.0;           ///< Visible vehicles only (V2V: all).
+  double localisation_ratio = 0.0;           ///< Over the bound's RMS for the same pairs.
   double localisation_all_rms_m = 0.0;
   Anees visible, hidden;
   TrajectoryGospaResult trajectory;

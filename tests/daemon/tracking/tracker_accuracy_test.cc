@@ -100,7 +100,8 @@ TEST_P(SteadyState, LeadCarStaysNearTheCramerRaoBound) {
                 << bound.range_m << " m: RMS " << std::sqrt(rms2) << " m, bound " << limit
                 << " m, ANEES " << nees << std::endl;
       EXPECT_LT(nees, 2.6);
-      EXPECT_GT(nees, 0.5);
+      // Reflections are drawn by the very model here: the allowance for a wrong one is too much.
+      EXPECT_GT(nees, extended ? 0.3 : 0.5);
     }
     EXPECT_LT(std::sqrt(squares / bound_squares), allowed) << "camera " << with_camera;
   }
