@@ -100,7 +100,7 @@ void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& 
         pairs_.pairs(), [&](const PairTable::Pair& pair) { return pair.track_id == track.id; });
     const bool is_sure = has_pair && AreSensorsSure(track, frame, map, settings_->vehicle,
                                                     settings_->priority.sensor_support);
-    Sensed& sensed = sensed_.emplace_back(Sensed{track, is_sure, is_hit, {}});
+    Sensed& sensed = sensed_.emplace_back(Sensed{track, is_sure, is_hit, {}, false});
     for (const auto& [id, last_part] : parts_) {
       if (id == track.id) sensed.last_part = last_part;
     }
@@ -110,9 +110,8 @@ void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& 
         sensed.last_part = frame.stamp;
       }
     }
-    const bool is_partial =
-        sensed.last_part && ToSeconds(frame.stamp - *sensed.last_part) <= kPart_s;
-    if (is_partial) AddDoubt(sensed.track.state_O.covariance);
+    sensed.is_partial = sensed.last_part && ToSeconds(frame.stamp - *sensed.last_part) <= kPart_s;
+    if (sensed.is_partial) AddDoubt(sensed.track.state_O.covariance);
   }
 }
 
@@ -204,6 +203,13 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
   if (apart.norm() > kApart_m + 4.0 * PositionSigma(track.state_O)) {
     vehicle.filter.ResetVehicle(track.state_O);
   }
+  // Where the reflecting point lies on the vehicle is the sensors' lasting error; LOCAL carries it
+  // with the size, and no claim tells it apart from the sender's bias. While but a part is seen the
+  // filter keeps to what it knew of the whole, or the part would drag it along; the doubt is still
+  // published.
+  const Eigen::Matrix2d P = track.state_O.covariance.topLeftCorner<2, 2>();
+  if (!sensed.is_partial) vehicle.filter.WidenPosition(P);
+  vehicle.lasting = vehicle.filter.LackOf(P);
   vehicle.agreed = Coast(vehicle.filter.kinematics(), frame.stamp);
 }
 

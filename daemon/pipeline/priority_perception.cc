@@ -125,6 +125,7 @@ void PriorityPerception::Publish(Timestamp at, const EgoState& ego_at, TrackList
     track.id = vehicle.id;
     track.start = vehicle.start;
     track.state_O = vehicle.StateAt(at, config.filter);
+    track.state_O.covariance.topLeftCorner<2, 2>() += vehicle.lasting;
     track.extent = vehicle.extent;
     track.object_class = vehicle.object_class;
     track.existence = vehicle.existence;

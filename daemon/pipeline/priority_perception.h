@@ -85,6 +85,7 @@ class PriorityPerception {
     bool is_sure = false;  // The sensors alone are sure enough for PRIORITY.
     bool is_hit = false;   // Given a measurement in that frame.
     std::optional<Timestamp> last_part;  // Last look that had but a part of it.
+    bool is_partial = false;             // That was so lately that the part may mislead.
   };
   struct Settings {
     PriorityConfig priority;

@@ -194,6 +194,15 @@ ClaimFit PriorityFilter::Update(const ClaimInOdometry& claim, const PriorityFilt
   return fit;
 }
 
+Eigen::Matrix2d PriorityFilter::LackOf(const Eigen::Matrix2d& least) const {
+  const Eigen::Matrix2d lacking = least - covariance_.topLeftCorner<2, 2>();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts;
+  parts.computeDirect(lacking);
+  const Eigen::Vector2d positive = parts.eigenvalues().cwiseMax(0.0);
+  if (!positive.allFinite()) return Eigen::Matrix2d::Zero();
+  return parts.eigenvectors() * positive.asDiagonal() * parts.eigenvectors().transpose();
+}
+
 void PriorityFilter::ResetVehicle(const KinematicState& vehicle) {
   mean_.head<kStateSize>() = vehicle.mean;
   covariance_.topRows<kStateSize>().setZero();

@@ -89,6 +89,13 @@ class PriorityFilter {
   /// A claim valid at stamp().
   ClaimFit Update(const ClaimInOdometry& claim, const PriorityFilterConfig& config);
 
+  /// What the position's covariance lacks to be at least `least`: the positive part of least - P.
+  [[nodiscard]] Eigen::Matrix2d LackOf(const Eigen::Matrix2d& least) const;
+  /// Makes the position at least as uncertain as `least`.
+  void WidenPosition(const Eigen::Matrix2d& least) {
+    covariance_.topLeftCorner<2, 2>() += LackOf(least);
+  }
+
   /// Takes the vehicle's state from LOCAL again and keeps what is known of the sender; for when the
   /// two have come apart although the sensors see the vehicle.
   void ResetVehicle(const KinematicState& vehicle);

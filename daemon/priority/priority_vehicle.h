@@ -26,6 +26,10 @@ struct PriorityVehicle {
   Coast coast{};   ///< LOCAL at the last sensor support.
   Coast agreed{};  ///< The fused state then: what sensors and sender agreed upon.
 
+  /// Doubt of the position beside the filter's: what LOCAL had more when it was last seen. It is
+  /// published, but the filter does not follow it.
+  Eigen::Matrix2d lasting = Eigen::Matrix2d::Zero();
+
   bool is_supported = true;  ///< Sensors see it; false: bridged.
   Timestamp last_support{};
   int regained_hits = 0;           ///< Hits since support was lost.

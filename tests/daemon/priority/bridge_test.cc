@@ -91,6 +91,23 @@ TEST(EmptyPlace, OnlyARunOfClearLooksCounts) {
   }
 }
 
+TEST(WidenPosition, RaisesWhatIsLessAndLeavesWhatIsMore) {
+  KinematicState state;
+  state.covariance = StateMatrix::Identity() * 0.01;
+  state.covariance(kX, kX) = 1.0;
+  PriorityFilter filter(state, FromMicros(0), Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity(),
+                        0.005, PriorityFilterConfig{});
+  const Eigen::Matrix2d least = Eigen::Vector2d(0.25, 0.25).asDiagonal();
+  EXPECT_NEAR(
+      (filter.LackOf(least) - Eigen::Matrix2d(Eigen::Vector2d(0.0, 0.24).asDiagonal())).norm(), 0.0,
+      1e-12);
+  filter.WidenPosition(least);
+  EXPECT_NEAR(filter.covariance()(kX, kX), 1.0, 1e-12);
+  EXPECT_NEAR(filter.covariance()(kY, kY), 0.25, 1e-12);
+  EXPECT_NEAR(filter.LackOf(least).norm(), 0.0, 1e-12);
+  EXPECT_TRUE(filter.is_healthy());
+}
+
 TEST(PriorityId, IsAFunctionOfTheLocalTrackAndFitsTheWire) {
   EXPECT_EQ(PriorityId(42, 0), PriorityId(42, 0));
   EXPECT_NE(PriorityId(42, 0), PriorityId(43, 0));
