@@ -36,8 +36,9 @@ bool Tracker::IsConvincing(std::size_t track) const {
   if (LargestSigma(hidden.filter.position_covariance()) > most_m) return false;
   if (hidden.pose_hits > 0) return true;
   if (shown.camera_hits > 0) return shown.radar_hits > 0 || !hidden.is_far;
-  if (hidden.clear_hits < kClearHits) return false;
-  if (hidden.not_pictured < kMissingPictures) return true;
+  const bool is_in_sight = hidden.clear_hits >= kClearHits;
+  const bool is_missing = hidden.not_pictured >= kMissingPictures;
+  if (is_in_sight && !is_missing) return true;
   return shown.radar_hits >= kLastingHits &&
          ToSeconds(hidden.last_hit - shown.start) >= kLastingImage_s;
 }

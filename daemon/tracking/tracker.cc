@@ -304,7 +304,8 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
     } else {
       hidden.proven = std::max(hidden.proven, tracks_[i].existence);
     }
-    if (detection_[i] >= kClearLook) ++hidden.clear_hits;
+    // A sensor that tracks by itself has sorted its mirror images out.
+    if (z.is_object || detection_[i] >= kClearLook) ++hidden.clear_hits;
     hidden.reflection_O = candidates_[static_cast<std::size_t>(assigned_[i])].p_O;
     hidden.reflected = now_;
     tracks_[i].last_radar = now_;
