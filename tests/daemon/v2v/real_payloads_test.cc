@@ -58,8 +58,7 @@ Bsm FromPayload(const nlohmann::json& vector) {
 TEST(RealPayloads, EveryOneIsJudgedByItsContent) {
   std::ifstream file(DataFolder() + "/j2735_bsm_vectors.json");
   if (!file) {
-    std::cout << "SKIPPED: no J2735 payloads in " << DataFolder() << "\n";
-    GTEST_SKIP();
+    GTEST_SKIP() << "SKIPPED: no J2735 payloads in " << DataFolder();
   }
   const nlohmann::json data = nlohmann::json::parse(file);
   int taken = 0;
