@@ -14,6 +14,12 @@ namespace v2vouch {
 /// Typical footprint of a class with its spread in traffic; kUnknown is a car that may be anything
 /// up to a van.
 Extent ClassExtent(ObjectClass object_class);
+/// Lorries and buses: their length is not to be guessed from a part.
+inline bool IsLong(ObjectClass object_class) {
+  return object_class == ObjectClass::kTruck || object_class == ObjectClass::kBus;
+}
+/// Articulated lorries with some tolerance: 16.5 m and 18.75 m are the limits of 96/53/EC.
+inline constexpr double kLongestVehicle_m = 18.75;
 
 /// Vehicle whose size is estimated together with its motion. The near face is measured well, the
 /// centre lies half a length behind it: only the joint covariance knows that a longer vehicle is

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "daemon/base/angle.h"
+#include "daemon/models/extent.h"
 #include "daemon/tracking/tracker.h"
 
 namespace v2vouch {
@@ -25,14 +26,12 @@ constexpr double kRangeRateSlack_mps = 1.5;
 constexpr double kOwnerExistence = 0.5;
 // A lorry or bus whose length is not known yet may reach this many sigmas farther.
 constexpr double kLongReachSigmas = 2.0;
-constexpr double kLongestVehicle_m = 18.75;
 
 // How far from its centre a vehicle may reflect along its axis.
 double ReachAlong(const LocalTrack& track) {
   const Extent& extent = track.extent;
-  const bool is_long =
-      track.object_class == ObjectClass::kTruck || track.object_class == ObjectClass::kBus;
-  if (!is_long) return 0.5 * extent.length_m + extent.length_sigma_m + kEndMargin_m;
+  if (!IsLong(track.object_class))
+    return 0.5 * extent.length_m + extent.length_sigma_m + kEndMargin_m;
   return std::min(0.5 * extent.length_m + kLongReachSigmas * extent.length_sigma_m,
                   kLongestVehicle_m - 0.5 * extent.length_m) +
          kEndMargin_m;

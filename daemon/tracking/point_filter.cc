@@ -159,25 +159,19 @@ PointFilter PointFilter::FromRadar(const RadarLook& look, const RadarMeasurement
   return filter;
 }
 
-PointFilter PointFilter::FromCamera(const CameraLook&, const Fix& fix) {
+PointFilter PointFilter::AtRest(const Fix& fix, double speed_sigma_mps) {
   PointFilter filter;
   filter.mean_ << fix.p_O, 0.0, 0.0;
   filter.covariance_.setZero();
   filter.covariance_.topLeftCorner<2, 2>() = fix.covariance;
   filter.covariance_.bottomRightCorner<2, 2>() =
-      kCameraSpeedSigma_mps * kCameraSpeedSigma_mps * Eigen::Matrix2d::Identity();
+      speed_sigma_mps * speed_sigma_mps * Eigen::Matrix2d::Identity();
   return filter;
 }
 
-PointFilter PointFilter::FromStanding(const Fix& fix) {
-  PointFilter filter;
-  filter.mean_ << fix.p_O, 0.0, 0.0;
-  filter.covariance_.setZero();
-  filter.covariance_.topLeftCorner<2, 2>() = fix.covariance;
-  filter.covariance_.bottomRightCorner<2, 2>() =
-      kPairedSpeedSigma_mps * kPairedSpeedSigma_mps * Eigen::Matrix2d::Identity();
-  return filter;
-}
+PointFilter PointFilter::FromCamera(const Fix& fix) { return AtRest(fix, kCameraSpeedSigma_mps); }
+
+PointFilter PointFilter::FromStanding(const Fix& fix) { return AtRest(fix, kPairedSpeedSigma_mps); }
 
 void PointFilter::Predict(double dt_s) {
   Eigen::Matrix4d F = Eigen::Matrix4d::Identity();

@@ -16,7 +16,7 @@ class PointFilter {
  public:
   /// @param is_exact the detections are of the vehicle's centre, free of the reflections' scatter.
   static PointFilter FromRadar(const RadarLook& look, const RadarMeasurement& z, bool is_exact);
-  static PointFilter FromCamera(const CameraLook& look, const Fix& fix);
+  static PointFilter FromCamera(const Fix& fix);
   /// From a picture and a standing radar return in its direction.
   static PointFilter FromStanding(const Fix& fix);
 
@@ -42,6 +42,8 @@ class PointFilter {
   [[nodiscard]] const Eigen::Matrix4d& covariance() const { return covariance_; }
 
  private:
+  static PointFilter AtRest(const Fix& fix, double speed_sigma_mps);
+
   Eigen::Vector4d mean_ = Eigen::Vector4d::Zero();
   Eigen::Matrix4d covariance_ = Eigen::Matrix4d::Identity();
 };

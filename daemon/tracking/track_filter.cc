@@ -22,10 +22,6 @@ constexpr double kFloor_m = 0.04;
 // A silhouette wider than this shows a side, unless a lorry's.
 constexpr double kWidestCar_m = 3.2;
 
-bool IsLong(ObjectClass object_class) {
-  return object_class == ObjectClass::kTruck || object_class == ObjectClass::kBus;
-}
-
 }  // namespace
 
 TrackFilter TrackFilter::FromRadar(const RadarLook& look, const RadarMeasurement& z,
@@ -40,7 +36,7 @@ TrackFilter TrackFilter::FromRadar(const RadarLook& look, const RadarMeasurement
 TrackFilter TrackFilter::FromCamera(const CameraLook& look, const CameraMeasurement& z,
                                     const Fix& fix) {
   TrackFilter filter;
-  filter.point_ = PointFilter::FromCamera(look, fix);
+  filter.point_ = PointFilter::FromCamera(fix);
   filter.seen_from_ = look.origin_O();
   filter.default_yaw_rad_ = look.ego.X_OB.yaw_rad();
   const double width_m =

@@ -61,10 +61,6 @@ unsigned Frozen(const ExtendedState& state, const Eigen::Vector2d& seen_from_O) 
   return std::abs(std::sin(aspect)) < kLengthShows ? 1U << ExtendedState::kLength : 0U;
 }
 
-bool IsLong(ObjectClass object_class) {
-  return object_class == ObjectClass::kTruck || object_class == ObjectClass::kBus;
-}
-
 void Rename(ObjectClass from, ObjectClass to, const Eigen::Vector2d& seen_from_O,
             ExtendedState& state) {
   if (IsLong(to) && !IsLong(from)) {
