@@ -86,6 +86,7 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
   checks.Channel("lcm.channels.tracks_v2v", names.tracks_v2v);
   checks.Channel("lcm.channels.calibration", names.calibration);
   checks.Channel("lcm.channels.misbehavior", names.misbehavior);
+  checks.Channel("lcm.channels.bsm_verdict", names.bsm_verdict);
   checks.Channel("lcm.channels.status", names.status);
   checks.Channel("lcm.channels.config", names.config);
 

@@ -113,6 +113,9 @@ void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
   for (const MisbehaviorReport& report : outputs_.reports) {
     wire::EncodeReport(report, outbox.Add(config_.lcm.channels.misbehavior));
   }
+  for (const BsmVerdict& verdict : outputs_.bsm_verdicts) {
+    wire::EncodeVerdict(verdict, outbox.Add(config_.lcm.channels.bsm_verdict));
+  }
   const auto now = watch_.newest_own();
   if (now && (!last_status_ || *now - *last_status_ >= kStatusPeriod)) PublishStatus(outbox);
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "daemon/base/time.h"
+#include "daemon/data/finding.h"
 #include "daemon/data/input.h"
 
 namespace v2vouch {
@@ -15,20 +16,22 @@ namespace v2vouch {
 struct Claim {
   SenderId sender = 0;
   CertificateDigest certificate{};
-  Timestamp received{};     ///< Orders claims.
-  double age_s = 0.0;       ///< Reception minus claimed time of the content, >= 0.
+  Timestamp received{};  ///< Orders claims.
+  double age_s = 0.0;    ///< Reception minus claimed time of the content, >= 0.
   Eigen::Vector3d p_E = Eigen::Vector3d::Zero();  ///< Centre of the footprint, ECEF [m].
-  Eigen::Vector3d course_E = Eigen::Vector3d::UnitX();  ///< Unit vector of the vehicle's x axis, ECEF.
+  Eigen::Vector3d course_E =
+      Eigen::Vector3d::UnitX();  ///< Unit vector of the vehicle's x axis, ECEF.
   bool has_elevation = false;
-  double height_m = 0.0;        ///< Above the ellipsoid; 0 where unknown.
-  double speed_mps = 0.0;       ///< Along course_E; negative in reverse.
-  bool has_course = true;       ///< False: heading unavailable; course_E says nothing.
+  double height_m = 0.0;   ///< Above the ellipsoid; 0 where unknown.
+  double speed_mps = 0.0;  ///< Along course_E; negative in reverse.
+  bool has_course = true;  ///< False: heading unavailable; course_E says nothing.
   double accel_mps2 = 0.0;
-  double yaw_rate_radps = 0.0;  ///< Left positive.
+  double yaw_rate_radps = 0.0;    ///< Left positive.
   double position_sigma_m = 2.0;  ///< Per axis, reported accuracy clamped to what we believe.
   bool accuracy_is_poor = false;  ///< Reported worse than 5 m: intent only, cannot validate.
   std::optional<double> length_m;
   std::optional<double> width_m;
+  std::optional<Finding> finding{};  ///< Gravest that the message stream alone has against it.
 };
 
 /// A claim in the odometry frame, carried forward to a given time.
@@ -42,7 +45,8 @@ struct ClaimInOdometry {
   double accel_mps2 = 0.0;
   bool has_course = true;
   Eigen::Matrix2d noise = Eigen::Matrix2d::Identity();  ///< White part per message [m^2].
-  Eigen::Matrix2d alignment = Eigen::Matrix2d::Zero();  ///< Common to all senders: ego pose error here.
+  Eigen::Matrix2d alignment =
+      Eigen::Matrix2d::Zero();  ///< Common to all senders: ego pose error here.
   double yaw_sigma_rad = 0.02;
   double speed_sigma_mps = 0.2;
 };

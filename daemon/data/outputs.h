@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/base/reason.h"
+#include "daemon/data/finding.h"
 #include "daemon/data/track.h"
 
 namespace v2vouch {
@@ -37,9 +38,9 @@ struct PublishedTrack {
 };
 
 struct TrackList {
-  Timestamp stamp{};      ///< Time of validity; never goes back within one list.
+  Timestamp stamp{};  ///< Time of validity; never goes back within one list.
   std::int64_t seq = 0;
-  int revision = 0;       ///< Corrections by late data in the last replay buffer's length.
+  int revision = 0;  ///< Corrections by late data in the last replay buffer's length.
   bool stale = false;
   bool ego_gnss_suspect = false;
   Pose<Odometry, Body> X_OB;
@@ -53,7 +54,14 @@ struct Diagnostic {
   Timestamp stamp{};
 };
 
-enum class Verdict : std::int8_t { kWithdraw = 1, kAccuse = 2 };
+/// What became of one BSM when it was first heard.
+struct BsmVerdict {
+  Timestamp stamp{};  ///< Reception.
+  std::int64_t seq = 0;
+  SenderId sender = 0;
+  TrustState trust = TrustState::kNone;  ///< Of the sender once it was used; kNone: refused.
+  std::optional<Reason> refusal;
+};
 
 struct Evidence {
   std::string_view name;  ///< With its unit; points at a literal.
@@ -78,12 +86,14 @@ struct Outputs {
   TrackList v2v;
   std::vector<Diagnostic> diagnostics;
   std::vector<MisbehaviorReport> reports;
+  std::vector<BsmVerdict> bsm_verdicts;  ///< Only where they are asked for.
 
   void Clear() {
     has_lists = false;
     has_v2v_list = false;
     diagnostics.clear();
     reports.clear();
+    bsm_verdicts.clear();
   }
   void Refuse(Reason reason, Timestamp stamp) { diagnostics.push_back({reason, stamp}); }
 };

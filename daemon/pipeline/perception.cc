@@ -36,6 +36,7 @@ struct Perception::State {
   void OnOwn(const OwnFrame& message, Outputs& outputs);
   void OnFix(const GnssFix& fix, Outputs& outputs);
   void OnBsm(const Bsm& bsm, Outputs& outputs);
+  void Tell(const Bsm& bsm, std::optional<Reason> refusal, Outputs& outputs) const;
   void Settle();
   void Restart(Outputs& outputs);
   [[nodiscard]] bool IsTooFarAhead(Timestamp stamp) const;
@@ -109,15 +110,26 @@ void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
   const EgoPlace place = Place();
   intake.Expire(bsm.stamp);
   const auto claim = intake.Accept(bsm, place);
-  if (!claim) return outputs.Refuse(claim.reason(), bsm.stamp);
+  if (!claim) {
+    Tell(bsm, claim.reason(), outputs);
+    return outputs.Refuse(claim.reason(), bsm.stamp);
+  }
   // Far senders can meet no track: they are listed, and cost nothing more.
   if (place.is_known && HorizontalDistance(place.p_E, claim->p_E) > config.timeline.interest_m) {
-    return;
+    return Tell(bsm, std::nullopt, outputs);
   }
   timeline.Insert(TimedClaim{*claim, bsm.seq, bias->Estimate(bsm.sender)}, outputs);
   // Whoever vouches for a vehicle keeps its place in the table, whatever floods it.
   const TrustState trust = timeline.priority().TrustOf(bsm.sender);
   intake.Pin(bsm.sender, trust == TrustState::kValidated || trust == TrustState::kBridged);
+  Tell(bsm, std::nullopt, outputs);
+}
+
+void Perception::State::Tell(const Bsm& bsm, std::optional<Reason> refusal,
+                             Outputs& outputs) const {
+  if (!config.v2v.message_verdicts) return;
+  const TrustState trust = refusal ? TrustState::kNone : timeline.priority().TrustOf(bsm.sender);
+  outputs.bsm_verdicts.push_back({bsm.stamp, bsm.seq, bsm.sender, trust, refusal});
 }
 
 // What can no longer change goes to the bias estimator, in order.

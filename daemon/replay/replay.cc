@@ -23,7 +23,7 @@ bool IsOurOutput(const std::string& channel, const DaemonConfig& config) {
   const wire::ChannelNames& names = config.lcm.channels;
   if (channel == names.tracks_local || channel == names.tracks_priority ||
       channel == names.tracks_v2v || channel == names.status || channel == names.misbehavior ||
-      channel == names.config || channel == names.calibration) {
+      channel == names.bsm_verdict || channel == names.config || channel == names.calibration) {
     return true;
   }
   // What our detector saw is made again where it looks at the pictures now.

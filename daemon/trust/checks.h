@@ -8,19 +8,10 @@
 #include <string_view>
 
 #include "daemon/base/time.h"
-#include "daemon/data/outputs.h"
+#include "daemon/data/finding.h"
 #include "daemon/trust/trust_config.h"
 
 namespace v2vouch {
-
-/// What one check found against a sender. The strings are literals.
-struct Finding {
-  std::string_view check;
-  Verdict severity = Verdict::kWithdraw;  ///< What this reading alone would justify.
-  std::string_view quantity;              ///< With its unit.
-  double value = 0.0;
-  double limit = 0.0;  ///< Of `severity`.
-};
 
 /// One claim beside the LOCAL track it is taken for, both at the claim's time. Raw: no bias of the
 /// sender has been taken off, or a slow liar would be calibrated away.

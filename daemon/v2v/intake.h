@@ -32,7 +32,8 @@ struct IntakeConfig {
   double min_position_sigma_m = 0.5;  ///< Reported accuracy is clamped to this range.
   double max_position_sigma_m = 3.0;
   double unknown_position_sigma_m = 2.0;
-  std::uint32_t own_id = 0;  ///< Our own TemporaryID where fixed; 0 = unknown.
+  bool message_verdicts = false;  ///< Report of every message what became of it.
+  std::uint32_t own_id = 0;       ///< Our own TemporaryID where fixed; 0 = unknown.
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -51,6 +52,7 @@ struct IntakeConfig {
     a.Field("min_position_sigma_m", min_position_sigma_m, {.above = 0.0, .at_most = 10.0});
     a.Field("max_position_sigma_m", max_position_sigma_m, {.above = 0.0, .at_most = 20.0});
     a.Field("unknown_position_sigma_m", unknown_position_sigma_m, {.above = 0.0, .at_most = 20.0});
+    a.Field("message_verdicts", message_verdicts);
   }
 };
 

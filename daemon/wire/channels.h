@@ -22,6 +22,7 @@ struct ChannelNames {
   std::string tracks_v2v = "TRACKS_V2V";
   std::string calibration = "CALIBRATION";
   std::string misbehavior = "MISBEHAVIOR";
+  std::string bsm_verdict = "BSM_VERDICT";
   std::string status = "V2VOUCH_STATUS";
   std::string config = "V2VOUCH_CONFIG";
 
@@ -39,6 +40,7 @@ struct ChannelNames {
     a.Text("tracks_v2v", tracks_v2v);
     a.Text("calibration", calibration);
     a.Text("misbehavior", misbehavior);
+    a.Text("bsm_verdict", bsm_verdict);
     a.Text("status", status);
     a.Text("config", config);
   }

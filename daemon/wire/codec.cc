@@ -6,6 +6,7 @@
 #include "daemon/base/check.h"
 #include "daemon/wire/layout.h"
 #include "v2vouch/bsm_t.hpp"
+#include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
@@ -16,6 +17,7 @@
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/text_t.hpp"
 #include "v2vouch/track_list_t.hpp"
+#include "v2vouch/truth_bsm_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
 
 namespace v2vouch::wire {
@@ -92,6 +94,7 @@ void Encode(const T& message, std::vector<std::uint8_t>& bytes) {
   template Result<Type> Decode<Type>(std::span<const std::uint8_t>); \
   template void Encode<Type>(const Type&, std::vector<std::uint8_t>&);
 V2VOUCH_CODEC(bsm_t)
+V2VOUCH_CODEC(bsm_verdict_t)
 V2VOUCH_CODEC(calibration_t)
 V2VOUCH_CODEC(camera_detections_t)
 V2VOUCH_CODEC(camera_image_t)
@@ -102,6 +105,7 @@ V2VOUCH_CODEC(misbehavior_report_t)
 V2VOUCH_CODEC(radar_scan_t)
 V2VOUCH_CODEC(text_t)
 V2VOUCH_CODEC(track_list_t)
+V2VOUCH_CODEC(truth_bsm_t)
 V2VOUCH_CODEC(truth_list_t)
 #undef V2VOUCH_CODEC
 

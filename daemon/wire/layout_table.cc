@@ -4,6 +4,7 @@
 // files.
 #include "daemon/wire/layout.h"
 #include "v2vouch/bsm_t.hpp"
+#include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/calibration_parameter_t.hpp"
 #include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_box_t.hpp"
@@ -23,6 +24,7 @@
 #include "v2vouch/text_t.hpp"
 #include "v2vouch/track_list_t.hpp"
 #include "v2vouch/track_t.hpp"
+#include "v2vouch/truth_bsm_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
 #include "v2vouch/truth_object_t.hpp"
 #include "v2vouch/truth_sensor_t.hpp"
@@ -220,11 +222,22 @@ constexpr Field kMisbehaviorReportFields[] = {
     {.name = "certificate_digest", .kind = Kind::kByte, .fixed = 8},
     {.name = "check", .kind = Kind::kString, .max_length = kMaxNameBytes},
     {.name = "verdict", .kind = Kind::kInt8},
+    {.name = "etsi_class", .kind = Kind::kInt8},
+    {.name = "is_j3287", .kind = Kind::kInt8},
     {.name = "num_evidence", .kind = Kind::kInt32},
     {.name = "evidence", .kind = Kind::kStruct, .type = &kEvidence, .max_count = 64},
 };
 constexpr Layout kMisbehaviorReport =
     MakeLayout("misbehavior_report_t", kMisbehaviorReportFields, 32 * 1024);
+
+constexpr Field kBsmVerdictFields[] = {
+    {.name = "utime", .kind = Kind::kInt64},
+    {.name = "seq", .kind = Kind::kInt64},
+    {.name = "sender_id", .kind = Kind::kByte, .fixed = 4},
+    {.name = "trust_state", .kind = Kind::kInt8},
+    {.name = "refusal", .kind = Kind::kString, .max_length = kMaxNameBytes},
+};
+constexpr Layout kBsmVerdict = MakeLayout("bsm_verdict_t", kBsmVerdictFields, 1024);
 
 constexpr Field kRadarDetectionFields[] = {
     {.name = "range_m", .kind = Kind::kDouble},
@@ -339,6 +352,33 @@ constexpr Field kTruthObjectFields[] = {
 };
 constexpr Layout kTruthObject = MakeLayout("truth_object_t", kTruthObjectFields);
 
+constexpr Field kTruthBsmFields[] = {
+    {.name = "utime", .kind = Kind::kInt64},
+    {.name = "seq", .kind = Kind::kInt64},
+    {.name = "sender_id", .kind = Kind::kByte, .fixed = 4},
+    {.name = "vehicle_id", .kind = Kind::kInt64},
+    {.name = "device_id", .kind = Kind::kInt64},
+    {.name = "is_attacker", .kind = Kind::kInt8},
+    {.name = "is_attack", .kind = Kind::kInt8},
+    {.name = "attack", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "age_s", .kind = Kind::kDouble},
+    {.name = "claimed_x_m", .kind = Kind::kDouble},
+    {.name = "claimed_y_m", .kind = Kind::kDouble},
+    {.name = "claimed_yaw_rad", .kind = Kind::kDouble},
+    {.name = "claimed_speed_mps", .kind = Kind::kDouble},
+    {.name = "claimed_accel_mps2", .kind = Kind::kDouble},
+    {.name = "claimed_length_m", .kind = Kind::kDouble},
+    {.name = "claimed_width_m", .kind = Kind::kDouble},
+    {.name = "honest_x_m", .kind = Kind::kDouble},
+    {.name = "honest_y_m", .kind = Kind::kDouble},
+    {.name = "honest_yaw_rad", .kind = Kind::kDouble},
+    {.name = "honest_speed_mps", .kind = Kind::kDouble},
+    {.name = "honest_accel_mps2", .kind = Kind::kDouble},
+    {.name = "honest_length_m", .kind = Kind::kDouble},
+    {.name = "honest_width_m", .kind = Kind::kDouble},
+};
+constexpr Layout kTruthBsm = MakeLayout("truth_bsm_t", kTruthBsmFields, 1024);
+
 constexpr Field kTruthListFields[] = {
     {.name = "utime", .kind = Kind::kInt64},
     {.name = "seq", .kind = Kind::kInt64},
@@ -363,6 +403,7 @@ constexpr Layout kTruthList = MakeLayout("truth_list_t", kTruthListFields, 8 * 1
     return layout;                   \
   }
 V2VOUCH_LAYOUT(bsm_t, kBsm)
+V2VOUCH_LAYOUT(bsm_verdict_t, kBsmVerdict)
 V2VOUCH_LAYOUT(calibration_parameter_t, kCalibrationParameter)
 V2VOUCH_LAYOUT(calibration_t, kCalibration)
 V2VOUCH_LAYOUT(camera_box_t, kCameraBox)
@@ -384,6 +425,7 @@ V2VOUCH_LAYOUT(track_t, kTrack)
 V2VOUCH_LAYOUT(track_list_t, kTrackList)
 V2VOUCH_LAYOUT(truth_sensor_t, kTruthSensor)
 V2VOUCH_LAYOUT(truth_object_t, kTruthObject)
+V2VOUCH_LAYOUT(truth_bsm_t, kTruthBsm)
 V2VOUCH_LAYOUT(truth_list_t, kTruthList)
 #undef V2VOUCH_LAYOUT
 

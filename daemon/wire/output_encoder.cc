@@ -7,6 +7,7 @@
 #include "daemon/data/object_class.h"
 #include "daemon/wire/codec.h"
 #include "daemon/wire/sensor_conversion.h"
+#include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/daemon_status_t.hpp"
@@ -131,6 +132,7 @@ void EncodeReport(const MisbehaviorReport& report, std::vector<std::uint8_t>& by
   std::copy(report.certificate.begin(), report.certificate.end(), to.certificate_digest);
   to.check = Name(report.check);
   to.verdict = static_cast<std::int8_t>(report.verdict);
+  to.etsi_class = misbehavior_report_t::ETSI_NONE;
   for (const Evidence& evidence : report.evidence) {
     evidence_t figure{};
     figure.name = Name(evidence.name);
@@ -138,6 +140,16 @@ void EncodeReport(const MisbehaviorReport& report, std::vector<std::uint8_t>& by
     to.evidence.push_back(figure);
   }
   SetCount(to.num_evidence, to.evidence);
+  Encode(to, bytes);
+}
+
+void EncodeVerdict(const BsmVerdict& verdict, std::vector<std::uint8_t>& bytes) {
+  bsm_verdict_t to{};
+  to.utime = ToMicros(verdict.stamp);
+  to.seq = verdict.seq;
+  PutSender(verdict.sender, to.sender_id);
+  to.trust_state = static_cast<std::int8_t>(verdict.trust);
+  if (verdict.refusal) to.refusal = Name(ReasonName(*verdict.refusal));
   Encode(to, bytes);
 }
 

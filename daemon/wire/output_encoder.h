@@ -22,6 +22,7 @@ track_list_t ToWire(const TrackList& list);
 
 void EncodeList(const TrackList& list, std::vector<std::uint8_t>& bytes);
 void EncodeReport(const MisbehaviorReport& report, std::vector<std::uint8_t>& bytes);
+void EncodeVerdict(const BsmVerdict& verdict, std::vector<std::uint8_t>& bytes);
 void EncodeDetections(const CameraDetections& detections, const std::string& sensor,
                       std::vector<std::uint8_t>& bytes);
 void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes);

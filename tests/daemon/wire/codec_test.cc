@@ -12,6 +12,7 @@
 #include "tests/daemon/wire/allocation_watch.h"
 #include "tests/daemon/wire/random_message.h"
 #include "v2vouch/bsm_t.hpp"
+#include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
@@ -22,6 +23,7 @@
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/text_t.hpp"
 #include "v2vouch/track_list_t.hpp"
+#include "v2vouch/truth_bsm_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
 
 namespace v2vouch::wire {

@@ -13,6 +13,7 @@
 #include "daemon/wire/input_decoder.h"
 #include "daemon/wire/output_encoder.h"
 #include "daemon/wire/sensor_conversion.h"
+#include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/daemon_status_t.hpp"
@@ -425,6 +426,15 @@ TEST(OutputEncoder, OurOwnDecoderTakesWhatWeWrite) {
   report.evidence = {{"residual_m", 3.0}};
   EncodeReport(report, bytes);
   EXPECT_EQ(Decode<misbehavior_report_t>(bytes)->evidence[0].value, 3.0);
+  EncodeVerdict({FromMicros(5), 6, 0x01020304, TrustState::kNone, Reason::kBsmStale}, bytes);
+  EXPECT_EQ(Decode<bsm_verdict_t>(bytes)->refusal, "bsm_stale");
+  EncodeVerdict({FromMicros(5), 6, 0x01020304, TrustState::kSuspect, std::nullopt}, bytes);
+  const auto verdict = Decode<bsm_verdict_t>(bytes);
+  EXPECT_EQ(verdict->refusal, "");
+  EXPECT_EQ(verdict->trust_state, track_t::TRUST_SUSPECT);
+  EXPECT_EQ(verdict->utime, 5);
+  EXPECT_EQ(verdict->seq, 6);
+  EXPECT_EQ(verdict->sender_id[0], 1);
   CalibrationInForce calibration;
   calibration.parameters = {{"a", 1.0, 2.0, "PRIOR"}};
   EncodeCalibration(calibration, bytes);

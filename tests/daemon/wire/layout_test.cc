@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "v2vouch/bsm_t.hpp"
+#include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
@@ -22,6 +23,7 @@
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/text_t.hpp"
 #include "v2vouch/track_list_t.hpp"
+#include "v2vouch/truth_bsm_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
 
 namespace v2vouch::wire {
@@ -88,10 +90,11 @@ TEST(LayoutTable, EqualsTheLcmFilesFieldByField) {
   ASSERT_GT(files.size(), 20u);
   std::map<std::string, Description> table;
   for (const Layout* layout :
-       {&LayoutOf<bsm_t>(), &LayoutOf<calibration_t>(), &LayoutOf<camera_detections_t>(),
-        &LayoutOf<camera_image_t>(), &LayoutOf<daemon_status_t>(), &LayoutOf<ego_motion_t>(),
-        &LayoutOf<gnss_fix_t>(), &LayoutOf<misbehavior_report_t>(), &LayoutOf<radar_scan_t>(),
-        &LayoutOf<text_t>(), &LayoutOf<track_list_t>(), &LayoutOf<truth_list_t>()}) {
+       {&LayoutOf<bsm_t>(), &LayoutOf<bsm_verdict_t>(), &LayoutOf<truth_bsm_t>(),
+        &LayoutOf<calibration_t>(), &LayoutOf<camera_detections_t>(), &LayoutOf<camera_image_t>(),
+        &LayoutOf<daemon_status_t>(), &LayoutOf<ego_motion_t>(), &LayoutOf<gnss_fix_t>(),
+        &LayoutOf<misbehavior_report_t>(), &LayoutOf<radar_scan_t>(), &LayoutOf<text_t>(),
+        &LayoutOf<track_list_t>(), &LayoutOf<truth_list_t>()}) {
     EXPECT_GT(layout->max_bytes, layout->min_bytes + 8) << layout->name;
     Describe(*layout, table);
   }
