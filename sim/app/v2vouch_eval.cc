@@ -7,6 +7,7 @@
 
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/report.h"
+#include "sim/evaluation/spoof_json.h"
 
 namespace {
 
@@ -20,6 +21,9 @@ constexpr const char* kExamples =
     "  v2vouch-eval OUT.lcm --json --cutoff 30     the same for programs\n"
     "  v2vouch-eval OUT.lcm --report report/       report/index.html, one file\n"
     "  v2vouch-eval OUT.lcm --paper OUT_PAPER.lcm --report report/\n"
+    "  v2vouch-eval OUT.lcm --spoof                how lies fared, and the honest; wants "
+    "TRUTH_BSM\n"
+    "                                              and `v2v.message_verdicts: true` in the replay\n"
     "  v2vouch-eval drive.lcm --summary            a real drive: counts, no truth needed\n"
     "\n"
     "Exit codes: 0 good; 1 the log cannot be read or judged (no TRUTH), or with --gates a gate is\n"
@@ -33,11 +37,31 @@ std::function<void(double)> Progress(const char* what) {
   };
 }
 
-bool Load(const std::string& path, v2vouch::evaluation::RunLog& log) {
+bool Load(const std::string& path, v2vouch::evaluation::RunLog& log,
+          v2vouch::evaluation::ReadScope scope = v2vouch::evaluation::ReadScope::kAll) {
   std::string error;
-  if (v2vouch::evaluation::ReadRunLog(path, Progress("reading"), log, error)) return true;
+  if (v2vouch::evaluation::ReadRunLog(path, Progress("reading"), log, error, scope)) return true;
   std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());
   return false;
+}
+
+int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
+  using namespace v2vouch::evaluation;
+  RunLog log;
+  if (!Load(path, log, ReadScope::kSpoof)) return kFailed;
+  const char* missing = log.truth.empty()        ? "TRUTH"
+                        : log.bsm_truths.empty() ? "TRUTH_BSM"
+                        : log.bsm_verdicts.empty()
+                            ? "BSM_VERDICT (set `v2v.message_verdicts: true`)"
+                            : nullptr;
+  if (missing != nullptr) {
+    std::fprintf(stderr, "v2vouch-eval: %s holds no %s, so spoofing cannot be judged.\n",
+                 path.c_str(), missing);
+    return kFailed;
+  }
+  const SpoofRun run = JudgeSpoof(log, with_message_checks);
+  std::fputs((as_json ? SpoofJson(run) : SpoofTable(run)).c_str(), stdout);
+  return kGood;
 }
 
 }  // namespace
@@ -50,7 +74,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", V2VOUCH_VERSION);
   std::string log_path, paper_path, report_folder, lcm_url;
   ScoringSettings settings;
-  bool as_json = false, summary = false, use_gates = false;
+  bool as_json = false, summary = false, use_gates = false, spoof = false, message_checks = false;
   app.add_option("LOG", log_path, "Recorded run: outputs of the daemon or v2vouch-replay")
       ->required();
   app.add_option("--paper", paper_path, "The same run with `association: paper`, shown beside");
@@ -64,6 +88,10 @@ int main(int argc, char** argv) {
   app.add_flag("--json", as_json, "Figures as JSON on standard output");
   app.add_flag("--summary", summary, "Counts and lengths of the lists only; needs no truth");
   app.add_flag("--gates", use_gates, "Exit code 1 when a gate is missed");
+  auto* of_spoof = app.add_flag("--spoof", spoof, "Spoof resistance instead of tracking accuracy");
+  app.add_flag("--message-checks", message_checks,
+               "With --spoof: message-only checks of the published kind on the same messages")
+      ->needs(of_spoof);
   app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network");
   try {
     app.parse(argc, argv);
@@ -71,6 +99,7 @@ int main(int argc, char** argv) {
     return app.exit(problem) == 0 ? kGood : kUsage;
   }
 
+  if (spoof) return JudgeLies(log_path, message_checks, as_json);
   RunLog log;
   if (!Load(log_path, log)) return kFailed;
   if (summary) {

@@ -230,6 +230,7 @@ Bound::Bound(const RunLog& log, const std::vector<Timestamp>& grid, const BoundS
   const std::vector<SensorLook> looks = Looks(log);
   for (std::size_t o = 0; o < objects; ++o) {
     if (!log.truth.objects[o].is_vehicle()) continue;
+    if (settings.only_senders && !log.truth.objects[o].has_v2v) continue;
     Walk walk(log, log.truth.objects[o], settings);
     std::size_t look = 0;
     std::size_t bsm = 0;

@@ -28,6 +28,7 @@ struct BoundSettings {
   double bridge_most_s = 10.0;  ///< PRIORITY's budget: min(most, max(least, base + co-observed)).
   double bridge_base_s = 2.0;
   double bridge_least_s = 4.5;
+  bool only_senders = false;  ///< Leave the cells of vehicles that send no BSMs empty.
 };
 
 /// The posterior Cramer-Rao bound of a run, by information recursion along every true vehicle's

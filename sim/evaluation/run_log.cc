@@ -6,11 +6,13 @@
 #include <cmath>
 #include <map>
 #include <v2vouch/bsm_t.hpp>
+#include <v2vouch/bsm_verdict_t.hpp>
 #include <v2vouch/camera_detections_t.hpp>
 #include <v2vouch/misbehavior_report_t.hpp>
 #include <v2vouch/radar_scan_t.hpp>
 #include <v2vouch/text_t.hpp>
 #include <v2vouch/track_list_t.hpp>
+#include <v2vouch/truth_bsm_t.hpp>
 #include <v2vouch/truth_list_t.hpp>
 
 #include "daemon/io/event_log.h"
@@ -30,10 +32,15 @@ bool AllFinite(std::initializer_list<double> values) {
 
 class Reader {
  public:
-  explicit Reader(RunLog& log) : log_(log) {}
+  Reader(RunLog& log, ReadScope scope) : log_(log), scope_(scope) {}
 
   void Take(const LogEvent& event) {
     const std::string& channel = event.channel;
+    if (scope_ == ReadScope::kSpoof) {
+      if (channel == "TRACKS_LOCAL" || channel == "TRACKS_V2V") return;
+      if (channel == "TRUTH_BSM") return TakeBsmTruth(event);
+      if (channel == "BSM_VERDICT") return TakeBsmVerdict(event);
+    }
     if (channel == "TRACKS_LOCAL") return TakeList(event, ListKind::kLocal);
     if (channel == "TRACKS_V2V") return TakeList(event, ListKind::kV2v);
     if (channel == "TRACKS_PRIORITY") return TakeList(event, ListKind::kPriority);
@@ -145,7 +152,42 @@ class Reader {
   void TakeReport(const LogEvent& event) {
     const auto message = Decoded<misbehavior_report_t>(event);
     if (!message) return;
-    log_.reports.push_back({event.received, SenderFrom(message->sender_id), message->check});
+    log_.reports.push_back({event.received, SenderFrom(message->sender_id), message->check,
+                            message->verdict == misbehavior_report_t::ACCUSE});
+  }
+
+  void TakeBsmTruth(const LogEvent& event) {
+    const auto message = Decoded<truth_bsm_t>(event);
+    if (!message) return;
+    const truth_bsm_t& m = *message;
+    log_.bsm_truths.push_back({FromMicros(m.utime),
+                               m.seq,
+                               SenderFrom(m.sender_id),
+                               m.vehicle_id,
+                               m.device_id,
+                               m.is_attacker != 0,
+                               m.is_attack != 0,
+                               m.age_s,
+                               {{m.claimed_x_m, m.claimed_y_m},
+                                m.claimed_yaw_rad,
+                                m.claimed_speed_mps,
+                                m.claimed_accel_mps2,
+                                m.claimed_length_m,
+                                m.claimed_width_m},
+                               {{m.honest_x_m, m.honest_y_m},
+                                m.honest_yaw_rad,
+                                m.honest_speed_mps,
+                                m.honest_accel_mps2,
+                                m.honest_length_m,
+                                m.honest_width_m}});
+  }
+
+  void TakeBsmVerdict(const LogEvent& event) {
+    const auto message = Decoded<bsm_verdict_t>(event);
+    if (!message) return;
+    log_.bsm_verdicts.push_back({FromMicros(message->utime), message->seq,
+                                 SenderFrom(message->sender_id), message->trust_state,
+                                 message->refusal});
   }
 
   void TakeScenario(const LogEvent& event) {
@@ -178,6 +220,7 @@ class Reader {
   }
 
   RunLog& log_;
+  ReadScope scope_;
   std::map<std::int64_t, TruthObject> objects_;
   std::string scenario_;
   std::vector<std::pair<SensorLook, std::string>> looks_;
@@ -197,11 +240,11 @@ const char* ListTitle(ListKind kind) {
 }
 
 bool ReadRunLog(const std::string& path, const std::function<void(double)>& progress, RunLog& log,
-                std::string& error) {
+                std::string& error, ReadScope scope) {
   const auto reader = LogReader::Open(path, error);
   if (reader == nullptr) return false;
   log.path = path;
-  Reader taker(log);
+  Reader taker(log, scope);
   LogEvent event;
   std::optional<Timestamp> first;
   while (reader->Next(event)) {

@@ -56,11 +56,45 @@ struct BsmArrival {
   std::uint32_t sender = 0;
 };
 
+/// What one BSM says of its vehicle, or what is true of it; world frame W, centre of the footprint.
+struct BsmContent {
+  Eigen::Vector2d p_W = Eigen::Vector2d::Zero();  ///< [m]; NaN where there is no such vehicle.
+  double yaw_rad = 0.0;
+  double speed_mps = 0.0;  ///< Negative in reverse.
+  double accel_mps2 = 0.0;
+  double length_m = 0.0;
+  double width_m = 0.0;
+};
+
+/// The simulator's knowledge of one BSM (channel TRUTH_BSM).
+struct BsmTruth {
+  Timestamp stamp{};  ///< Reception, as the BSM's own.
+  std::int64_t seq = 0;
+  std::uint32_t sender = 0;
+  std::int64_t vehicle = 0;  ///< TruthObject::id it speaks for; 0 = there is no such vehicle.
+  std::int64_t device = 0;   ///< Who transmits, whatever it calls itself.
+  bool is_attacker = false;  ///< The device is an attacker's.
+  bool is_attack = false;    ///< An attack shaped this message.
+  double age_s = 0.0;        ///< Of the content at reception.
+  BsmContent claimed;
+  BsmContent honest;
+};
+
+/// What the daemon did with one BSM (channel BSM_VERDICT).
+struct BsmVerdict {
+  Timestamp stamp{};  ///< Reception, as the BSM's own.
+  std::int64_t seq = 0;
+  std::uint32_t sender = 0;
+  int trust = 0;        ///< Constants of track_t, when the message was used.
+  std::string refusal;  ///< Reason; empty = accepted.
+};
+
 /// A verdict about a sender, as published.
 struct VerdictReport {
   Timestamp received{};
   std::uint32_t sender = 0;
   std::string check;
+  bool is_accusation = false;  ///< ACCUSE; otherwise WITHDRAW.
 };
 
 /// Everything evaluation takes from a log, each in order of arrival.
@@ -71,6 +105,8 @@ struct RunLog {
   std::array<std::vector<ReceivedList>, 3> lists;  ///< By ListKind.
   std::vector<SensorLook> looks;
   std::vector<BsmArrival> bsms;
+  std::vector<BsmTruth> bsm_truths;
+  std::vector<BsmVerdict> bsm_verdicts;
   std::vector<VerdictReport> reports;
   std::int64_t events = 0;
   std::int64_t refused = 0;  ///< Messages that did not decode.
@@ -78,13 +114,18 @@ struct RunLog {
   double log_seconds = 0.0;
 };
 
+enum class ReadScope {
+  kAll,    ///< Everything but the messages' truths and verdicts.
+  kSpoof,  ///< What spoof scoring needs: those too, and PRIORITY as the only list.
+};
+
 /// Reads a recorded run: the three lists, TRUTH, SIM_SCENARIO, and the arrival times of own sensor
-/// frames and BSMs. Tracks that are not confirmed, and states that are not finite, are left out
-/// (the latter counted as refused).
+/// frames and BSMs; TRUTH_BSM and BSM_VERDICT where `scope` asks for them. Tracks that are not
+/// confirmed, and states that are not finite, are left out (the latter counted as refused).
 /// @param progress called now and then with the share read, 0..1; may be empty.
 /// @return false with `error` set when the file cannot be read.
 bool ReadRunLog(const std::string& path, const std::function<void(double)>& progress, RunLog& log,
-                std::string& error);
+                std::string& error, ReadScope scope = ReadScope::kAll);
 
 /// The newest list received by `t`, or null.
 const ReceivedList* NewestBy(const std::vector<ReceivedList>& lists, Timestamp t);

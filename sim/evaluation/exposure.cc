@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/evaluation/exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "sim/evaluation/joint_view.h"
+#include "sim/evaluation/placing.h"
+#include "sim/evaluation/scoring.h"
+
+namespace v2vouch::evaluation {
+namespace {
+
+constexpr double kSame_m = 1.0;   // A track belongs to a vehicle no further away than this ...
+constexpr double kOther_m = 3.0;  // ... where no other is within this.
+
+struct Nearest {
+  double distance_m = std::numeric_limits<double>::infinity();
+  double second_m = std::numeric_limits<double>::infinity();
+  std::size_t object = 0;
+};
+
+Nearest NearestBox(const std::vector<TrueBox>& boxes, const Eigen::Vector2d& p_W) {
+  Nearest nearest;
+  for (const TrueBox& box : boxes) {
+    const double distance_m = box.box.DistanceTo(p_W);
+    if (distance_m < nearest.distance_m) {
+      nearest.second_m = nearest.distance_m;
+      nearest.distance_m = distance_m;
+      nearest.object = box.object;
+    } else {
+      nearest.second_m = std::min(nearest.second_m, distance_m);
+    }
+  }
+  return nearest;
+}
+
+// Nothing real around at all: as far away as the lists reach.
+double Finite(double distance_m) { return std::min(distance_m, 1000.0); }
+
+class Meter {
+ public:
+  Meter(const RunLog& log, const Senders& senders) : log_(log), senders_(senders) {
+    for (const BsmTruth& m : log.bsm_truths) {
+      if (m.is_attack && (!begin_ || m.stamp < *begin_)) begin_ = m.stamp;
+    }
+  }
+
+  void TakeInstant(Timestamp t, double period_s) {
+    const auto placed = PlaceTracks(log_, NewestBy(log_.lists[Index(ListKind::kPriority)], t),
+                                    ListKind::kPriority, t);
+    ++result_.instants;
+    if (placed.empty()) {
+      ghosts_.clear();
+      return;
+    }
+    const std::vector<TrueBox> boxes = TrueBoxes(log_.truth, t);
+    if (placed.size() > boxes.size()) ++result_.outnumbered;
+    std::map<std::size_t, int> claimed;
+    std::map<std::int64_t, double> ghosts_now;
+    for (const PlacedTrack& track : placed) {
+      const Eigen::Vector2d p_W = track.motion_W.position();
+      const Nearest nearest = NearestBox(boxes, p_W);
+      const double exposure_m = Finite(nearest.distance_m);
+      if (nearest.distance_m <= kSame_m && nearest.second_m > kOther_m) ++claimed[nearest.object];
+      const Senders::Attack* attack = senders_.AttackUnder(track.track->sender, t);
+      if (exposure_m > Exposure::kGhost_m) {
+        TakeGhost(track.track->id, exposure_m, period_s, attack != nullptr, ghosts_now);
+      }
+      if (attack != nullptr) TakeAttacker(*attack, t, p_W, boxes, exposure_m, period_s);
+    }
+    ghosts_ = std::move(ghosts_now);
+    result_.doubled += std::any_of(claimed.begin(), claimed.end(),
+                                   [](const auto& vehicle) { return vehicle.second > 1; })
+                           ? 1
+                           : 0;
+  }
+
+  Exposure Finish() {
+    result_.ghosts = static_cast<int>(counted_.size());
+    return std::move(result_);
+  }
+
+ private:
+  void TakeGhost(std::int64_t id, double exposure_m, double period_s, bool is_attacker,
+                 std::map<std::int64_t, double>& ghosts_now) {
+    const auto before = ghosts_.find(id);
+    const double lasted_s = before == ghosts_.end() ? 0.0 : before->second + period_s;
+    ghosts_now[id] = lasted_s;
+    // Half a period of tolerance: the grid is rounded to microseconds.
+    if (lasted_s < Exposure::kGhost_s - 0.5 * period_s) return;
+    result_.ghost_max_m = std::max(result_.ghost_max_m, exposure_m);
+    if (counted_.insert(id).second && is_attacker) ++result_.ghosts_of_attackers;
+  }
+
+  void TakeAttacker(const Senders::Attack& attack, Timestamp t, const Eigen::Vector2d& p_W,
+                    const std::vector<TrueBox>& boxes, double exposure_m, double period_s) {
+    result_.priority_s += period_s;
+    result_.max_m = std::max(result_.max_m, exposure_m);
+    if (exposure_m > Exposure::kHarm_m) result_.harm_s += period_s;
+    const auto bin = static_cast<std::size_t>(ToSeconds(t - *begin_) / Exposure::kBin_s);
+    if (result_.curve_m.size() <= bin) result_.curve_m.resize(bin + 1, 0.0);
+    result_.curve_m[bin] = std::max(result_.curve_m[bin], exposure_m);
+    for (const TrueBox& box : boxes) {
+      if (log_.truth.objects[box.object].id != attack.original_vehicle) continue;
+      const double distance_m = box.box.DistanceTo(p_W);
+      result_.original_max_m = std::max(result_.original_max_m, distance_m);
+      if (distance_m > Exposure::kHarm_m) result_.original_harm_s += period_s;
+    }
+  }
+
+  const RunLog& log_;
+  const Senders& senders_;
+  std::optional<Timestamp> begin_;
+  std::map<std::int64_t, double> ghosts_;  // Seconds above the limit on end, by track.
+  std::set<std::int64_t> counted_;
+  Exposure result_;
+};
+
+}  // namespace
+
+Exposure MeasureExposure(const RunLog& log, const Senders& senders) {
+  ScoringSettings settings;
+  settings.skip_s = 0.0;
+  Meter meter(log, senders);
+  for (const Timestamp t : MakeGrid(log.truth, settings)) meter.TakeInstant(t, settings.period_s);
+  return meter.Finish();
+}
+
+}  // namespace v2vouch::evaluation

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sim/evaluation/message_judgement.h"
+
+namespace v2vouch::evaluation {
+
+/// What an attack makes a consumer of PRIORITY believe, on a 20 Hz grid: the newest list received
+/// by each instant, predicted to it.
+///
+/// The exposure of a track is the distance from its centre to the nearest real vehicle's box, 0
+/// inside. Tracks whose sender is an attacker, from that id's first attack message on, count for
+/// the attack; ghosts and crowding count whoever sends.
+struct Exposure {
+  static constexpr double kHarm_m = 3.0;
+  static constexpr double kGhost_m = 5.0;
+  static constexpr double kGhost_s = 0.2;
+  static constexpr double kBin_s = 0.5;
+
+  double max_m = 0.0;
+  double harm_s = 0.0;  ///< Track-seconds with an exposure above `kHarm_m`.
+  /// The same distance to the vehicle the device first spoke for (its own, or the one it shadows).
+  double original_max_m = 0.0;
+  double original_harm_s = 0.0;
+  double priority_s = 0.0;  ///< Track-seconds of attackers in PRIORITY after their attack began.
+  /// Largest exposure per bin of time since the first attack message of the run.
+  std::vector<double> curve_m;
+
+  int ghosts = 0;               ///< Tracks above `kGhost_m` for at least `kGhost_s` on end.
+  int ghosts_of_attackers = 0;  ///< Those whose sender is an attacker.
+  double ghost_max_m = 0.0;     ///< Largest exposure of a ghost.
+  std::int64_t instants = 0;
+  std::int64_t outnumbered = 0;  ///< Instants with more PRIORITY tracks than real vehicles.
+  /// Instants with two PRIORITY tracks within 1 m of the same real vehicle and none other within
+  /// 3 m of either: one car listed twice.
+  std::int64_t doubled = 0;
+};
+
+Exposure MeasureExposure(const RunLog& log, const Senders& senders);
+
+}  // namespace v2vouch::evaluation
