@@ -22,6 +22,10 @@ template <class T>
 inline constexpr bool kIsVector = false;
 template <class T>
 inline constexpr bool kIsVector<std::vector<T>> = true;
+template <class T>
+inline constexpr bool kIsOptional = false;
+template <class T>
+inline constexpr bool kIsOptional<std::optional<T>> = true;
 
 /// The archive that fills a config struct from a YAML map through its Visit list (base/visit.h).
 /// Strict: unknown, repeated and wrongly typed keys and values out of range are problems, every one
@@ -30,7 +34,8 @@ inline constexpr bool kIsVector<std::vector<T>> = true;
 ///     FILE:LINE: key.path = value: must be above 0, at most 10
 ///
 /// A key that is not there keeps its default. A list of structs replaces the default list, and its
-/// elements start from the struct's own defaults.
+/// elements start from the struct's own defaults. An optional is filled where its key is there,
+/// starting from its type's own defaults.
 class YamlReader {
  public:
   YamlReader(const YamlNode& node, std::string path, const std::string& name,
@@ -91,6 +96,8 @@ class YamlReader {
       }
     } else if constexpr (std::is_same_v<T, std::string>) {
       ReadText(node, path, value);
+    } else if constexpr (kIsOptional<T>) {
+      Read(node, path, value.emplace(), bounds);
     } else if constexpr (kIsVector<T>) {
       if (!IsList(node, path)) return;
       value.clear();

@@ -21,7 +21,9 @@ class YamlWriter {
  public:
   template <class T>
   void Field(const char* key, T& value, const Bounds& = {}) {
-    if constexpr (std::is_same_v<T, bool>) {
+    if constexpr (kIsOptional<T>) {
+      if (value) Field(key, *value);
+    } else if constexpr (std::is_same_v<T, bool>) {
       Line(key, value ? "true" : "false");
     } else if constexpr (std::is_same_v<T, double>) {
       Line(key, Scalar(value));
@@ -57,7 +59,7 @@ class YamlWriter {
  private:
   template <class T>
   void List(const char* key, std::vector<T>& values) {
-    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::string>) {
+    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::string> || std::integral<T>) {
       std::string items;
       for (const T& value : values) items += (items.empty() ? "" : ", ") + Scalar(value);
       Line(key, "[" + items + "]");
@@ -76,6 +78,7 @@ class YamlWriter {
   void Line(std::string_view key, std::string_view value);
   static std::string Scalar(double value);
   static std::string Scalar(const std::string& value);
+  static std::string Scalar(std::integral auto value) { return std::to_string(value); }
 
   std::string text_;
   std::size_t indent_ = 0;

@@ -29,6 +29,8 @@ struct Inner {
 
 struct Settings {
   Inner dbscan;
+  std::optional<Inner> extra{};
+  std::vector<std::uint32_t> ids{};
   bool is_on = true;
   double yaw_rad = FromDegrees(60.0);
   std::string name = "FRONT";
@@ -41,6 +43,8 @@ struct Settings {
   template <class Archive>
   void Visit(Archive& a) {
     a.Field("dbscan", dbscan);
+    a.Field("extra", extra);
+    a.Field("ids", ids, {.at_least = 1});
     a.Field("is_on", is_on);
     a.Degrees("yaw_deg", yaw_rad, {.at_least = -180.0, .at_most = 180.0});
     a.Text("name", name);
@@ -63,6 +67,20 @@ Reading Read(const std::string& text) {
   const bool good = Parse(text, "a.yaml", reading.settings, reading.problems);
   EXPECT_EQ(good, reading.problems.empty());
   return reading;
+}
+
+TEST(YamlReader, AnOptionalSectionIsThereOnlyWhereItsKeyIs) {
+  EXPECT_FALSE(Read("ids: [3, 4000000000]").settings.extra.has_value());
+  const Reading reading = Read("extra: {min_points: 8}\nids: [3, 4000000000]");
+  ASSERT_TRUE(reading.settings.extra.has_value());
+  EXPECT_EQ(reading.settings.extra->min_points, 8);
+  EXPECT_EQ(reading.settings.extra->eps_m, 1.2);
+  EXPECT_THAT(Read("extra: {min_point: 8}").problems,
+              ElementsAre(HasSubstr("extra.min_point: unknown key")));
+  const std::string text = Print(reading.settings);
+  EXPECT_THAT(text, HasSubstr("extra:\n  eps_m: 1.2\n  min_points: 8\nids: [3, 4000000000]\n"));
+  EXPECT_EQ(Print(Read(text + "of_others: 1").settings), text);
+  EXPECT_THAT(Print(Settings{}), testing::Not(HasSubstr("extra")));
 }
 
 TEST(YamlReader, EveryKindOfValueIsRead) {
@@ -186,6 +204,7 @@ TEST(YamlWriter, PrintsDegreesAndNumbersAsAUserWouldWriteThem) {
             "dbscan:\n"
             "  eps_m: 0.1\n"
             "  min_points: 3\n"
+            "ids: []\n"
             "is_on: true\n"
             "yaw_deg: 60\n"
             "name: FRONT\n"
