@@ -9,6 +9,8 @@
 #include "daemon/base/visit.h"
 #include "daemon/data/input.h"
 #include "daemon/data/vehicle.h"
+#include "sim/world/radio_specs.h"
+#include "sim/world/sensor_specs.h"
 
 /// The scenario file as plain structs. Every section is a struct with a Visit list, so that
 /// reading, checking and printing share one list and a new section (an attack, a condition) is one
@@ -126,26 +128,6 @@ struct EgoSpec {
   void Visit(Archive& a) {
     a.Field("drive", drive);
     a.Field("trajectory_id", trajectory_id, {});
-  }
-};
-
-/// What sets one sender apart from the scenario's `bsm` section.
-struct SenderSpec {
-  double rate_hz = 0.0;      ///< 0 = as in `bsm`.
-  double bias_east_m = 0.0;  ///< Added to the bias drawn.
-  double bias_north_m = 0.0;
-  double noise_scale = 1.0;  ///< Of all this sender's GNSS errors.
-  double latency_scale = 1.0;
-  double identity_change_s = 0.0;  ///< Takes a new TemporaryID and certificate then; 0 = never.
-
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("rate_hz", rate_hz, {.at_least = 0.0, .at_most = 50.0});
-    a.Field("bias_east_m", bias_east_m, {.at_least = -1e3, .at_most = 1e3});
-    a.Field("bias_north_m", bias_north_m, {.at_least = -1e3, .at_most = 1e3});
-    a.Field("noise_scale", noise_scale, {.at_least = 0.0, .at_most = 100.0});
-    a.Field("latency_scale", latency_scale, {.at_least = 0.0, .at_most = 20.0});
-    a.Field("identity_change_s", identity_change_s, {.at_least = 0.0, .at_most = 1e5});
   }
 };
 
@@ -268,156 +250,6 @@ struct RailSpec {
     a.Field("offset_m", offset_m, {.at_least = -100.0, .at_most = 100.0});
     a.Field("from_m", from_m, {.at_least = -1e4, .at_most = 1e5});
     a.Field("to_m", to_m, {.at_least = -1e4, .at_most = 1e5});
-  }
-};
-
-enum class SensorMode {
-  kRealistic,    ///< Extended targets, static returns, clutter, ghosts, box errors.
-  kIdealPoints,  ///< One detection at each visible vehicle's centre; nothing else.
-};
-
-struct SensorsSpec {
-  SensorMode mode = SensorMode::kRealistic;
-  double noise_scale = 1.0;       ///< Of every radar and camera sigma.
-  double clutter_scale = 1.0;     ///< Of the sensors' own clutter rates.
-  double ghost_scale = 1.0;       ///< Of mirror and double-bounce ghosts; 0 = none.
-  double radar_latency_s = 0.02;  ///< Shortest; stamp to arrival.
-  double radar_latency_spread_s = 0.02;
-  double camera_latency_s = 0.06;
-  double camera_latency_spread_s = 0.06;
-
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Choice("mode", mode,
-             {{"realistic", SensorMode::kRealistic}, {"ideal_points", SensorMode::kIdealPoints}});
-    a.Field("noise_scale", noise_scale, {.at_least = 0.0, .at_most = 20.0});
-    a.Field("clutter_scale", clutter_scale, {.at_least = 0.0, .at_most = 100.0});
-    a.Field("ghost_scale", ghost_scale, {.at_least = 0.0, .at_most = 10.0});
-    a.Field("radar_latency_s", radar_latency_s, {.at_least = 0.0, .at_most = 1.0});
-    a.Field("radar_latency_spread_s", radar_latency_spread_s, {.at_least = 0.0, .at_most = 1.0});
-    a.Field("camera_latency_s", camera_latency_s, {.at_least = 0.0, .at_most = 1.0});
-    a.Field("camera_latency_spread_s", camera_latency_spread_s, {.at_least = 0.0, .at_most = 1.0});
-  }
-};
-
-/// Error of a GNSS receiver: constant bias (drawn once per receiver), first-order Gauss-Markov and
-/// white parts. Defaults: automotive receiver under open sky, measured on a real drive (u-blox,
-/// 10 Hz: bias 0.54 m, the rest 0.1-0.2 m per axis) and published figures.
-struct GnssErrorSpec {
-  double bias_sigma_m = 0.7;     ///< Per axis.
-  double markov_sigma_m = 0.25;  ///< Per axis.
-  double markov_time_s = 30.0;
-  double white_sigma_m = 0.05;
-  double height_sigma_m = 1.0;
-
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("bias_sigma_m", bias_sigma_m, {.at_least = 0.0, .at_most = 100.0});
-    a.Field("markov_sigma_m", markov_sigma_m, {.at_least = 0.0, .at_most = 100.0});
-    a.Field("markov_time_s", markov_time_s, {.above = 0.1, .at_most = 1e4});
-    a.Field("white_sigma_m", white_sigma_m, {.at_least = 0.0, .at_most = 100.0});
-    a.Field("height_sigma_m", height_sigma_m, {.at_least = 0.0, .at_most = 100.0});
-  }
-};
-
-/// What every sender does unless its own `sender` block says otherwise.
-struct BsmSpec {
-  double rate_hz = 10.0;
-  double period_jitter_s = 0.005;  ///< Uniform, either way.
-  GnssErrorSpec gnss;
-  double latency_s = 0.07;         ///< Shortest time from position fix to reception.
-  double latency_spread_s = 0.13;  ///< Uniform on top.
-  double speed_markov_mps = 0.05;  ///< Gauss-Markov speed error, time constant of `gnss`.
-  double speed_white_mps = 0.05;
-  double heading_markov_rad = FromDegrees(0.4);
-  double heading_white_rad = FromDegrees(0.2);
-  double semi_major_m = 0.0;  ///< Reported accuracy; 0 = what the error model gives.
-  bool own_echo = false;      ///< The ego's own messages come back, too.
-
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("rate_hz", rate_hz, {.above = 0.1, .at_most = 50.0});
-    a.Field("period_jitter_s", period_jitter_s, {.at_least = 0.0, .at_most = 0.02});
-    a.Field("gnss", gnss);
-    a.Field("latency_s", latency_s, {.at_least = 0.0, .at_most = 10.0});
-    a.Field("latency_spread_s", latency_spread_s, {.at_least = 0.0, .at_most = 10.0});
-    a.Field("speed_markov_mps", speed_markov_mps, {.at_least = 0.0, .at_most = 20.0});
-    a.Field("speed_white_mps", speed_white_mps, {.at_least = 0.0, .at_most = 20.0});
-    a.Degrees("heading_markov_deg", heading_markov_rad, {.at_least = 0.0, .at_most = 180.0});
-    a.Degrees("heading_white_deg", heading_white_rad, {.at_least = 0.0, .at_most = 180.0});
-    a.Field("semi_major_m", semi_major_m, {.at_least = 0.0, .at_most = 12.65});
-    a.Field("own_echo", own_echo);
-  }
-};
-
-/// Who hears whom. Loss rises with distance as a logistic curve; an obstructed path counts as
-/// longer.
-struct RadioSpec {
-  double base_loss = 0.02;
-  double half_range_m = 350.0;  ///< Where half of the messages are lost.
-  double range_slope_m = 50.0;
-  double building_factor = 2.0;  ///< Length factor of a path through buildings.
-  double vehicle_factor = 1.3;   ///< ... past a truck or bus.
-  double tx_power_dbm = 20.0;
-
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("base_loss", base_loss, {.at_least = 0.0, .at_most = 1.0});
-    a.Field("half_range_m", half_range_m, {.above = 0.0, .at_most = 1e4});
-    a.Field("range_slope_m", range_slope_m, {.above = 0.0, .at_most = 1e4});
-    a.Field("building_factor", building_factor, {.at_least = 1.0, .at_most = 100.0});
-    a.Field("vehicle_factor", vehicle_factor, {.at_least = 1.0, .at_most = 100.0});
-    a.Field("tx_power_dbm", tx_power_dbm, {.at_least = -50.0, .at_most = 40.0});
-  }
-};
-
-/// The ego's own receiver.
-struct EgoGnssSpec {
-  double rate_hz = 10.0;
-  GnssErrorSpec error;
-  double latency_s = 0.05;  ///< Stamp to arrival.
-  double velocity_sigma_mps = 0.05;
-  bool has_heading = true;  ///< Dual antenna or the receiver's own fusion.
-  double heading_bias_rad = FromDegrees(0.1);
-  double heading_sigma_rad = FromDegrees(0.2);
-  double jump_at_s = 0.0;  ///< From then on the fix is off by jump_east/north; 0 = never.
-  double jump_east_m = 0.0;
-  double jump_north_m = 0.0;
-
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("rate_hz", rate_hz, {.at_least = 0.5, .at_most = 50.0});
-    a.Field("error", error);
-    a.Field("latency_s", latency_s, {.at_least = 0.0, .at_most = 2.0});
-    a.Field("velocity_sigma_mps", velocity_sigma_mps, {.at_least = 0.0, .at_most = 10.0});
-    a.Field("has_heading", has_heading);
-    a.Degrees("heading_bias_deg", heading_bias_rad, {.at_least = -180.0, .at_most = 180.0});
-    a.Degrees("heading_sigma_deg", heading_sigma_rad, {.at_least = 0.0, .at_most = 180.0});
-    a.Field("jump_at_s", jump_at_s, {.at_least = 0.0, .at_most = 1e5});
-    a.Field("jump_east_m", jump_east_m, {.at_least = -1e6, .at_most = 1e6});
-    a.Field("jump_north_m", jump_north_m, {.at_least = -1e6, .at_most = 1e6});
-  }
-};
-
-/// The ego's wheel speed and gyro. Scale: a production car measured -0.8 % against its GNSS/INS.
-struct OdometrySpec {
-  double rate_hz = 50.0;
-  double speed_scale = 1.004;  ///< Measured speed = this times the true one, plus noise.
-  double speed_sigma_mps = 0.03;
-  double yaw_rate_bias_radps = FromDegrees(0.03);
-  double yaw_rate_sigma_radps = FromDegrees(0.06);
-  double accel_sigma_mps2 = 0.1;
-  double latency_s = 0.003;
-
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("rate_hz", rate_hz, {.at_least = 5.0, .at_most = 200.0});
-    a.Field("speed_scale", speed_scale, {.at_least = 0.8, .at_most = 1.2});
-    a.Field("speed_sigma_mps", speed_sigma_mps, {.at_least = 0.0, .at_most = 5.0});
-    a.Degrees("yaw_rate_bias_degps", yaw_rate_bias_radps, {.at_least = -10.0, .at_most = 10.0});
-    a.Degrees("yaw_rate_sigma_degps", yaw_rate_sigma_radps, {.at_least = 0.0, .at_most = 10.0});
-    a.Field("accel_sigma_mps2", accel_sigma_mps2, {.at_least = 0.0, .at_most = 10.0});
-    a.Field("latency_s", latency_s, {.at_least = 0.0, .at_most = 1.0});
   }
 };
 

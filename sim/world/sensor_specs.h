@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "daemon/base/angle.h"
+#include "daemon/base/visit.h"
+#include "sim/world/radio_specs.h"
+
+/// Sections of a scenario file about what the ego measures: radar, camera, its own GNSS, odometry.
+namespace v2vouch::sim {
+
+enum class SensorMode {
+  kRealistic,    ///< Extended targets, static returns, clutter, ghosts, box errors.
+  kIdealPoints,  ///< One detection at each visible vehicle's centre; nothing else.
+};
+
+struct SensorsSpec {
+  SensorMode mode = SensorMode::kRealistic;
+  double noise_scale = 1.0;       ///< Of every radar and camera sigma.
+  double clutter_scale = 1.0;     ///< Of the sensors' own clutter rates.
+  double ghost_scale = 1.0;       ///< Of mirror and double-bounce ghosts; 0 = none.
+  double radar_latency_s = 0.02;  ///< Shortest; stamp to arrival.
+  double radar_latency_spread_s = 0.02;
+  double camera_latency_s = 0.06;
+  double camera_latency_spread_s = 0.06;
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Choice("mode", mode,
+             {{"realistic", SensorMode::kRealistic}, {"ideal_points", SensorMode::kIdealPoints}});
+    a.Field("noise_scale", noise_scale, {.at_least = 0.0, .at_most = 20.0});
+    a.Field("clutter_scale", clutter_scale, {.at_least = 0.0, .at_most = 100.0});
+    a.Field("ghost_scale", ghost_scale, {.at_least = 0.0, .at_most = 10.0});
+    a.Field("radar_latency_s", radar_latency_s, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("radar_latency_spread_s", radar_latency_spread_s, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("camera_latency_s", camera_latency_s, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("camera_latency_spread_s", camera_latency_spread_s, {.at_least = 0.0, .at_most = 1.0});
+  }
+};
+
+/// The ego's own receiver.
+struct EgoGnssSpec {
+  double rate_hz = 10.0;
+  GnssErrorSpec error;
+  double latency_s = 0.05;  ///< Stamp to arrival.
+  double velocity_sigma_mps = 0.05;
+  bool has_heading = true;  ///< Dual antenna or the receiver's own fusion.
+  double heading_bias_rad = FromDegrees(0.1);
+  double heading_sigma_rad = FromDegrees(0.2);
+  double jump_at_s = 0.0;  ///< From then on the fix is off by jump_east/north; 0 = never.
+  double jump_east_m = 0.0;
+  double jump_north_m = 0.0;
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("rate_hz", rate_hz, {.at_least = 0.5, .at_most = 50.0});
+    a.Field("error", error);
+    a.Field("latency_s", latency_s, {.at_least = 0.0, .at_most = 2.0});
+    a.Field("velocity_sigma_mps", velocity_sigma_mps, {.at_least = 0.0, .at_most = 10.0});
+    a.Field("has_heading", has_heading);
+    a.Degrees("heading_bias_deg", heading_bias_rad, {.at_least = -180.0, .at_most = 180.0});
+    a.Degrees("heading_sigma_deg", heading_sigma_rad, {.at_least = 0.0, .at_most = 180.0});
+    a.Field("jump_at_s", jump_at_s, {.at_least = 0.0, .at_most = 1e5});
+    a.Field("jump_east_m", jump_east_m, {.at_least = -1e6, .at_most = 1e6});
+    a.Field("jump_north_m", jump_north_m, {.at_least = -1e6, .at_most = 1e6});
+  }
+};
+
+/// The ego's wheel speed and gyro. Scale: a production car measured -0.8 % against its GNSS/INS.
+struct OdometrySpec {
+  double rate_hz = 50.0;
+  double speed_scale = 1.004;  ///< Measured speed = this times the true one, plus noise.
+  double speed_sigma_mps = 0.03;
+  double yaw_rate_bias_radps = FromDegrees(0.03);
+  double yaw_rate_sigma_radps = FromDegrees(0.06);
+  double accel_sigma_mps2 = 0.1;
+  double latency_s = 0.003;
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("rate_hz", rate_hz, {.at_least = 5.0, .at_most = 200.0});
+    a.Field("speed_scale", speed_scale, {.at_least = 0.8, .at_most = 1.2});
+    a.Field("speed_sigma_mps", speed_sigma_mps, {.at_least = 0.0, .at_most = 5.0});
+    a.Degrees("yaw_rate_bias_degps", yaw_rate_bias_radps, {.at_least = -10.0, .at_most = 10.0});
+    a.Degrees("yaw_rate_sigma_degps", yaw_rate_sigma_radps, {.at_least = 0.0, .at_most = 10.0});
+    a.Field("accel_sigma_mps2", accel_sigma_mps2, {.at_least = 0.0, .at_most = 10.0});
+    a.Field("latency_s", latency_s, {.at_least = 0.0, .at_most = 1.0});
+  }
+};
+
+}  // namespace v2vouch::sim
