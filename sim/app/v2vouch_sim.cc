@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // v2vouch-sim: a scenario -> sensor data, ego data, BSMs and truth, as a log or live over LCM.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "sim/app/shipped_files.h"
 #include "sim/app/v2vouch_sim_run.h"
+#include "sim/world/overlay.h"
 #include "sim/world/scenario.h"
 
 namespace v2vouch::sim {
@@ -20,50 +21,54 @@ constexpr const char* kExamples = R"(Examples:
   v2vouch-sim run left_turn --seed 1 --out left_turn.lcm
   v2vouch-sim run left_turn --seed 1 --sensors ideal_points --out ideal.lcm
   v2vouch-sim run my_scenario.yaml --seed 7 --set radio.base_loss=0.5 --out lossy.lcm
+  v2vouch-sim run campaign_urban --seed 1 --with my_attack.yaml --set traffic.vehicles=20 --out a.lcm
   v2vouch-sim run urban --seed 1 --live -l 'udpm://239.255.76.67:7667?ttl=0'
 
 The same scenario and seed give the same events, live or not. Scenarios are documented YAML; the
 shipped left_turn.yaml explains every section.
 Exit codes: 0 good, 1 the log or the LCM bus failed, 2 usage or scenario.)";
 
-// Shipped scenarios: beside an installed program, else in the source tree it was built from.
-std::filesystem::path ScenarioFolder() {
-  std::error_code ignored;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  const auto installed = self.parent_path().parent_path() / "share/v2vouch/scenarios";
-  if (std::filesystem::is_directory(installed, ignored)) return installed;
-  return V2VOUCH_SCENARIO_DIR;
-}
-
-std::string FindScenario(const std::string& name) {
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(name, ignored)) return name;
-  const auto shipped = ScenarioFolder() / (name + ".yaml");
-  return std::filesystem::is_regular_file(shipped, ignored) ? shipped.string() : name;
-}
-
-int List() {
-  std::vector<std::filesystem::path> files;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(ScenarioFolder(), error)) {
-    if (entry.path().extension() == ".yaml") files.push_back(entry.path());
-  }
-  if (error) {
-    std::fprintf(stderr, "v2vouch-sim: %s: %s\n", ScenarioFolder().c_str(),
-                 error.message().c_str());
-    return kUsage;
-  }
-  std::sort(files.begin(), files.end());
-  bool all_good = true;
-  for (const auto& file : files) {
+int List(bool as_json) {
+  std::vector<std::string> problems;
+  nlohmann::ordered_json scenarios = nlohmann::ordered_json::array();
+  nlohmann::ordered_json catalogue = nlohmann::ordered_json::array();
+  std::string folder_problem;
+  for (const auto& file : ShippedScenarios(folder_problem)) {
     Scenario scenario;
-    std::vector<std::string> problems;
-    all_good = LoadScenario(file.string(), scenario, problems) && all_good;
-    for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());
-    std::printf("%-12s %4.0f s  %s\n", file.stem().c_str(), scenario.duration_s,
-                scenario.description.c_str());
+    LoadScenario(file.string(), scenario, problems);
+    scenarios.push_back({{"name", file.stem().string()},
+                         {"seconds", scenario.duration_s},
+                         {"description", scenario.description}});
   }
-  return all_good ? 0 : kUsage;
+  for (const auto& file : ShippedOverlays(folder_problem)) {
+    Overlay overlay;
+    LoadOverlay(file.string(), overlay, problems);
+    catalogue.push_back({{"name", overlay.name},
+                         {"file", file.filename().string()},
+                         {"suits", overlay.suits},
+                         {"description", overlay.description}});
+  }
+  if (!folder_problem.empty()) problems.push_back(folder_problem);
+  for (const std::string& problem : problems) {
+    std::fprintf(stderr, "v2vouch-sim: %s\n", problem.c_str());
+  }
+  if (as_json) {
+    const nlohmann::ordered_json all = {{"scenarios", scenarios}, {"catalogue", catalogue}};
+    std::printf("%s\n", all.dump().c_str());
+    return problems.empty() ? 0 : kUsage;
+  }
+  const auto text = [](const nlohmann::ordered_json& entry, const char* key) {
+    return entry[key].get<std::string>();
+  };
+  for (const auto& entry : scenarios) {
+    std::printf("%-20s %4.0f s  %s\n", text(entry, "name").c_str(), entry["seconds"].get<double>(),
+                text(entry, "description").c_str());
+  }
+  if (!catalogue.empty()) std::printf("\nTo lay over a scenario, --with NAME:\n");
+  for (const auto& entry : catalogue) {
+    std::printf("%-26s  %s\n", text(entry, "name").c_str(), text(entry, "description").c_str());
+  }
+  return problems.empty() ? 0 : kUsage;
 }
 
 }  // namespace
@@ -79,7 +84,11 @@ int main(int argc, char** argv) {
   RunOptions options;
   std::string scenario;
   std::string sensors;
-  auto* list = app.add_subcommand("list", "Shipped scenarios, one a line: name, length, content");
+  std::vector<std::string> overlays;
+  auto* list =
+      app.add_subcommand("list", "Shipped scenarios and overlays, one a line: name, content");
+  bool as_json = false;
+  list->add_flag("--json", as_json, "The same as JSON");
   auto* run = app.add_subcommand("run", "Simulates one scenario");
   run->footer(kExamples);
   run->add_option("SCENARIO", scenario, "Name of a shipped scenario, or a YAML file")->required();
@@ -92,18 +101,22 @@ int main(int argc, char** argv) {
   run->add_option("--sensors", sensors, "Instead of the scenario's own sensors.mode")
       ->check(CLI::IsMember({"realistic", "ideal_points"}));
   run->add_option("--set", options.settings, "KEY=VALUE, a scenario setting; may be repeated");
+  run->add_option(
+      "--with", overlays,
+      "Overlay, a YAML file or the name of a shipped one (attack, condition); may be repeated");
   run->add_flag("--json", options.json, "Report what was made as JSON on standard output");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kUsage;
   }
-  if (*list) return List();
+  if (*list) return List(as_json);
   if (options.out.empty() && !options.live) {
     std::fprintf(stderr, "v2vouch-sim: one of --out LOG.lcm and --live is needed\n");
     return kUsage;
   }
   options.scenario = FindScenario(scenario);
+  for (const std::string& overlay : overlays) options.overlays.push_back(FindOverlay(overlay));
   if (!sensors.empty()) options.settings.push_back("sensors.mode=" + sensors);
   return Run(options);
 }

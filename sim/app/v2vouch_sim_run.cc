@@ -16,6 +16,7 @@
 #include "daemon/config/yaml_reader.h"
 #include "daemon/io/event_log.h"
 #include "sim/wire/simulation.h"
+#include "sim/world/overlay.h"
 #include "sim/world/world.h"
 
 namespace v2vouch::sim {
@@ -44,6 +45,7 @@ std::string AsYaml(const std::string& setting) {
 }
 
 bool Apply(const RunOptions& options, Scenario& scenario, std::vector<std::string>& problems) {
+  for (const std::string& overlay : options.overlays) LayOver(overlay, scenario, problems);
   for (const std::string& setting : options.settings) {
     const std::string yaml = AsYaml(setting);
     if (yaml.empty()) {
@@ -55,7 +57,7 @@ bool Apply(const RunOptions& options, Scenario& scenario, std::vector<std::strin
   if (options.duration_s > 0.0) {
     scenario.duration_s = std::min(scenario.duration_s, options.duration_s);
   }
-  return problems.empty();
+  return problems.empty() && CheckReferences(scenario, problems);
 }
 
 // Where events go.

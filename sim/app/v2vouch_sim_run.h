@@ -8,13 +8,14 @@
 namespace v2vouch::sim {
 
 struct RunOptions {
-  std::string scenario;  ///< File.
+  std::string scenario;               ///< File.
+  std::vector<std::string> overlays;  ///< Files laid over it, in order.
   std::uint64_t seed = 1;
   std::string out;                    ///< Log to write; empty with `live`.
   bool live = false;                  ///< Over LCM in real time.
   std::string lcm_url;                ///< Empty: LCM_DEFAULT_URL, then LCM's own default.
   double duration_s = 0.0;            ///< 0 = the scenario's own.
-  std::vector<std::string> settings;  ///< KEY=VALUE over the file, dots between levels.
+  std::vector<std::string> settings;  ///< KEY=VALUE over all files, dots between levels.
   bool json = false;
 };
 

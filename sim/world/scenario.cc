@@ -7,9 +7,9 @@
 #include "daemon/config/yaml_writer.h"
 
 namespace v2vouch::sim {
-namespace {
 
-void CheckReferences(const Scenario& scenario, std::vector<std::string>& problems) {
+bool CheckReferences(const Scenario& scenario, std::vector<std::string>& problems) {
+  const std::size_t before = problems.size();
   std::set<std::string> routes;
   for (const RouteSpec& route : scenario.routes) {
     if (!routes.insert(route.name).second) problems.push_back("routes: " + route.name + " twice");
@@ -32,6 +32,15 @@ void CheckReferences(const Scenario& scenario, std::vector<std::string>& problem
       problems.push_back("parked " + std::to_string(parked.id) + ": id is taken");
     }
   }
+  double weights = 0.0;
+  for (const TrafficLaneSpec& lane : scenario.traffic.lanes) {
+    need(lane.route, "traffic.lanes");
+    weights += lane.weight;
+    if (lane.to_m < lane.from_m) problems.push_back("traffic.lanes: to_m is less than from_m");
+  }
+  if (scenario.traffic.vehicles > 0 && weights <= 0.0) {
+    problems.push_back("traffic.vehicles: `traffic.lanes` names no lane with a weight");
+  }
   for (const RailSpec& rail : scenario.rails) need(rail.route, "rails");
   for (const BuildingSpec& building : scenario.buildings) {
     if (!building.outline.empty() &&
@@ -39,9 +48,8 @@ void CheckReferences(const Scenario& scenario, std::vector<std::string>& problem
       problems.push_back("buildings: outline needs x, y of three corners at least");
     }
   }
+  return problems.size() == before;
 }
-
-}  // namespace
 
 Size UsualSize(ObjectClass object_class) {
   switch (object_class) {

@@ -11,6 +11,7 @@
 #include "daemon/data/vehicle.h"
 #include "sim/world/radio_specs.h"
 #include "sim/world/sensor_specs.h"
+#include "sim/world/traffic_spec.h"
 
 /// The scenario file as plain structs. Every section is a struct with a Visit list, so that
 /// reading, checking and printing share one list and a new section (an attack, a condition) is one
@@ -262,6 +263,7 @@ struct Scenario {
   std::vector<RouteSpec> routes;
   EgoSpec ego;
   std::vector<VehicleSpec> vehicles;
+  TrafficSpec traffic;
   /// CSV of recorded or imported motion, beside this file. Columns time_s, id, class, x_m, y_m,
   /// yaw_rad, speed_mps, length_m, width_m; world frame, centre of the footprint.
   std::string trajectories;
@@ -277,6 +279,7 @@ struct Scenario {
   RadioSpec radio;
   EgoGnssSpec gnss;
   OdometrySpec odometry;
+  std::vector<std::string> overlays;  ///< Names of what was laid over it, in order (overlay.h).
 
   std::string folder{};  ///< Of the file it came from; not in the file.
 
@@ -290,6 +293,7 @@ struct Scenario {
     a.Field("routes", routes);
     a.Field("ego", ego);
     a.Field("vehicles", vehicles);
+    a.Field("traffic", traffic);
     a.Text("trajectories", trajectories);
     a.Field("v2v_share", v2v_share, {.at_least = 0.0, .at_most = 1.0});
     a.Field("parked", parked);
@@ -303,6 +307,7 @@ struct Scenario {
     a.Field("radio", radio);
     a.Field("gnss", gnss);
     a.Field("odometry", odometry);
+    a.Field("overlays", overlays);
   }
 };
 
@@ -317,6 +322,10 @@ Size UsualSize(ObjectClass object_class);
 /// Reads and checks a scenario file. Every problem found goes to `problems`, one line each.
 /// @return false when there is any.
 bool LoadScenario(const std::string& path, Scenario& scenario, std::vector<std::string>& problems);
+
+/// Whether ids are unique, routes named exist, and the like: what no single key can tell.
+/// @return false with one problem per fault.
+bool CheckReferences(const Scenario& scenario, std::vector<std::string>& problems);
 
 /// The effective scenario, every default spelled out, as YAML that LoadScenario takes again.
 std::string ToYaml(const Scenario& scenario);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "daemon/base/random.h"
+#include "sim/world/traffic.h"
 
 namespace v2vouch::sim {
 namespace {
@@ -56,21 +57,6 @@ Rail MakeRail(const RailSpec& spec, const Path& path) {
     rail.points.push_back(point.position + spec.offset_m * LeftOf(Direction(point.yaw_rad)));
   }
   return rail;
-}
-
-Actor MakeDriven(const VehicleSpec& spec, const Path& path, double duration_s) {
-  Actor actor;
-  actor.id = spec.id;
-  actor.object_class = spec.object_class;
-  actor.size = UsualSize(spec.object_class);
-  if (spec.length_m > 0.0) actor.size.length_m = spec.length_m;
-  if (spec.width_m > 0.0) actor.size.width_m = spec.width_m;
-  if (spec.height_m > 0.0) actor.size.height_m = spec.height_m;
-  actor.has_v2v = spec.v2v;
-  actor.sender = spec.sender;
-  actor.trajectory = Trajectory::Drive(path, spec.drive, actor.size.length_m,
-                                       kCentreAheadOfAxle * actor.size.length_m, duration_s);
-  return actor;
 }
 
 }  // namespace
@@ -131,6 +117,9 @@ std::unique_ptr<World> World::Make(const Scenario& scenario, std::uint64_t seed,
     actor.has_v2v = Random::ForSubject(seed, kSubjectV2vShare + id).Bernoulli(scenario.v2v_share);
     actor.trajectory = Trajectory::Follow(vehicle.rows);
     world->actors_.push_back(actor);
+  }
+  if (!AddTraffic(scenario, paths, world->ego_, duration, seed, world->actors_, problems)) {
+    return nullptr;
   }
   std::sort(world->actors_.begin(), world->actors_.end(),
             [](const Actor& a, const Actor& b) { return a.id < b.id; });

@@ -5,20 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/actor.h"
 #include "sim/world/scenario.h"
 #include "sim/world/trajectory.h"
 
 namespace v2vouch::sim {
-
-/// A vehicle as it never changes.
-struct Actor {
-  std::uint32_t id = 0;
-  ObjectClass object_class = ObjectClass::kCar;
-  Size size;
-  bool has_v2v = false;
-  SenderSpec sender;
-  Trajectory trajectory;
-};
 
 /// A vehicle at one instant.
 struct ActorState {

@@ -54,17 +54,30 @@ TEST_F(V2vouchSim, TellsUsageErrorsFromFailures) {
   EXPECT_EQ(ExitCode("--help"), 0);
   EXPECT_EQ(ExitCode("--version"), 0);
   EXPECT_EQ(ExitCode("list"), 0);
+  EXPECT_EQ(ExitCode("list --json"), 0);
   EXPECT_EQ(ExitCode("run"), 2);
   EXPECT_EQ(ExitCode("run smoke"), 2);  // Neither --out nor --live.
   EXPECT_EQ(ExitCode("run nosuch --out " + Path("a.lcm")), 2);
   EXPECT_EQ(ExitCode("run smoke --set sensors.mood=odd --out " + Path("a.lcm")), 2);
   EXPECT_EQ(ExitCode("run smoke --set radio.base_loss=7 --out " + Path("a.lcm")), 2);
+  EXPECT_EQ(ExitCode("run smoke --with nosuch --out " + Path("a.lcm")), 2);
+  EXPECT_EQ(ExitCode("run smoke --with H11/dense --out " + Path("a.lcm")), 2);  // Has no lanes.
   EXPECT_EQ(ExitCode("run smoke --out /nonexistent/a.lcm"), 1);
 }
 
 TEST_F(V2vouchSim, SettingsReachTheSimulation) {
   ASSERT_EQ(ExitCode("run smoke --duration 2 --set radio.base_loss=1 --out " + Path("a.lcm")), 0);
   for (const auto& [channel, bytes] : Messages(Path("a.lcm"))) EXPECT_NE(channel, "BSM");
+}
+
+TEST_F(V2vouchSim, OverlaysAreFoundByEitherNameAndSettingsComeAfterThem) {
+  const std::string run = "run campaign_highway --duration 1 --seed 11 --set traffic.vehicles=4 ";
+  ASSERT_EQ(ExitCode(run + "--with H11/dense --out " + Path("a.lcm")), 0);
+  ASSERT_EQ(ExitCode(run + "--with H11_dense --out " + Path("b.lcm")), 0);
+  ASSERT_EQ(ExitCode(run + "--out " + Path("c.lcm")), 0);
+  const auto by_id = Messages(Path("a.lcm"));
+  EXPECT_EQ(by_id, Messages(Path("b.lcm")));
+  EXPECT_NE(by_id, Messages(Path("c.lcm")));  // 40 % talk, not half.
 }
 
 // LCM's own file bus stands in for a network; the wall clock paces both the same.

@@ -65,7 +65,8 @@ TEST_P(ShippedScenario, EffectiveTextReadsBackAsTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScenario,
-                         testing::Values("left_turn", "urban", "highway", "occlusion", "smoke"));
+                         testing::Values("left_turn", "urban", "highway", "occlusion", "smoke",
+                                         "campaign_urban", "campaign_highway"));
 
 TEST(LoadScenario, ReportsEveryProblemWithItsPlace) {
   const auto path = std::filesystem::temp_directory_path() / "v2vouch_bad_scenario.yaml";

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace v2vouch::sim {
+
+/// The YAML files that come with the simulator: beside an installed program
+/// (share/v2vouch/scenarios and /catalogue), else in the source tree it was built from. Ordered by
+/// name; empty with `problem` set when the folder cannot be read.
+std::vector<std::filesystem::path> ShippedScenarios(std::string& problem);
+std::vector<std::filesystem::path> ShippedOverlays(std::string& problem);
+
+/// The file meant by the name of a shipped scenario or by a path; `name` itself where there is
+/// none.
+std::string FindScenario(const std::string& name);
+
+/// The same for overlays: a path, "A05_lateral_8m", or "A5/lateral_8m".
+std::string FindOverlay(const std::string& name);
+
+}  // namespace v2vouch::sim
