@@ -13,6 +13,8 @@ std::int32_t Rounded(double value, double unit, double low, double high) {
   return static_cast<std::int32_t>(std::llround(std::clamp(value / unit, low, high)));
 }
 
+constexpr double kDeviceBehind_m = 30.0;
+
 // Free-space loss at 5.9 GHz: 20 log10(4 pi f / c) = 47.9 dB at 1 m.
 double PathLoss_db(double distance_m) {
   return 47.9 + 20.0 * std::log10(std::max(1.0, distance_m));
@@ -58,9 +60,11 @@ void Quantise(const SenderState& state, bsm_t& bsm) {
   bsm.lat = Rounded(state.latitude_deg, 1e-7, -9e8, 9e8);
   bsm.long_ = Rounded(state.longitude_deg, 1e-7, -1799999999.0, 1.8e9);
   bsm.elev = Rounded(state.elevation_m, 0.1, -4095.0, 61439.0);
-  bsm.semiMajor = static_cast<std::int16_t>(Rounded(state.semi_major_m, 0.05, 0.0, 254.0));
+  const bool has_accuracy = !std::isnan(state.semi_major_m);
+  bsm.semiMajor =
+      static_cast<std::int16_t>(has_accuracy ? Rounded(state.semi_major_m, 0.05, 0.0, 254.0) : 255);
   bsm.semiMinor = bsm.semiMajor;
-  bsm.orientation = 0;
+  bsm.orientation = has_accuracy ? 0 : 65535;
   bsm.transmission = state.speed_mps < -0.05 ? 3 : 2;
   bsm.speed = static_cast<std::int16_t>(Rounded(std::abs(state.speed_mps), 0.02, 0.0, 8190.0));
   bsm.heading = Rounded(ToDegrees(state.heading_rad), 0.0125, 0.0, 28800.0) % 28800;
@@ -71,7 +75,8 @@ void Quantise(const SenderState& state, bsm_t& bsm) {
       static_cast<std::int16_t>(Rounded(state.accel_lat_mps2, 0.01, -2000.0, 2000.0));
   bsm.accelSet_vert = -127;
   bsm.accelSet_yaw = Rounded(ToDegrees(-state.yaw_rate_radps), 0.01, -32767.0, 32767.0);
-  const bool brakes = state.accel_long_mps2 < -0.8;
+  const bool brakes = state.brakes == Brakes::kByDeceleration ? state.accel_long_mps2 < -0.8
+                                                              : state.brakes == Brakes::kOn;
   bsm.wheelBrakes = brakes ? 0b01111 : 0;
   bsm.traction = 2;
   bsm.abs = 2;
@@ -82,8 +87,8 @@ void Quantise(const SenderState& state, bsm_t& bsm) {
   bsm.length = static_cast<std::int16_t>(Rounded(state.length_m, 0.01, 1.0, 4095.0));
 }
 
-Identity IdentityOf(std::uint64_t seed, std::uint32_t vehicle, int number) {
-  Random random = SubjectRandom(seed, "identity", {vehicle, static_cast<std::uint64_t>(number)});
+Identity IdentityOf(std::uint64_t seed, std::uint32_t device, int number) {
+  Random random = SubjectRandom(seed, "identity", {device, static_cast<std::uint64_t>(number)});
   Identity identity;
   std::uint64_t bits = random.Bits();
   for (auto& octet : identity.id) {
@@ -103,12 +108,20 @@ int IdentityNumber(const SenderSpec& sender, double time_s) {
 }
 
 BsmSender::BsmSender(const World& world, int actor, std::uint64_t seed)
+    : BsmSender(world, actor, actor < 0 ? 0 : world.actors()[static_cast<std::size_t>(actor)].id,
+                seed) {}
+
+BsmSender BsmSender::Device(const World& world, std::uint32_t device, std::uint64_t seed) {
+  return {world, -1, device, seed};
+}
+
+BsmSender::BsmSender(const World& world, int actor, std::uint32_t subject, std::uint64_t seed)
     : world_(world),
       actor_(actor),
-      subject_(actor < 0 ? 0 : world.actors()[static_cast<std::size_t>(actor)].id),
+      subject_(subject),
       sender_(actor < 0 ? SenderSpec{} : world.actors()[static_cast<std::size_t>(actor)].sender),
       seed_(seed),
-      plane_(PlaneOf(world.scenario().origin)),
+      writer_(world.scenario()),
       errors_(SubjectRandom(seed, "sender errors", {subject_})),
       position_(world.scenario().bsm.gnss, sender_.noise_scale,
                 SubjectRandom(seed, "sender gnss", {subject_})),
@@ -133,7 +146,7 @@ void BsmSender::Advance() {
   next_time_s_ = std::max(0.0, next_time_s_);
 }
 
-std::optional<bsm_t> BsmSender::Next() {
+std::optional<Message> BsmSender::NextMessage() {
   const BsmSpec& spec = world_.scenario().bsm;
   const double time = next_time_s_;
   const std::int64_t number = count_++;
@@ -154,68 +167,69 @@ std::optional<bsm_t> BsmSender::Next() {
   const double fading = random.Normal(0.0, 2.0);
 
   const Snapshot snapshot = world_.At(time);
-  SenderState state;
-  Vec2 centre;
-  double yaw = 0.0;
+  Message message;
+  Statement& said = message.said;
+  Vec2 radio;  // Where the antenna is.
   if (actor_ < 0) {
     const VehicleConfig& vehicle = world_.scenario().vehicle;
-    centre = snapshot.ego.PointAt(vehicle.centre_x_m, 0.0);
-    yaw = snapshot.ego.yaw_rad;
-    state.speed_mps = snapshot.ego.speed_mps;
-    state.accel_long_mps2 = snapshot.ego.accel_mps2;
-    state.yaw_rate_radps = snapshot.ego.yaw_rate_radps;
-    state.length_m = vehicle.length_m;
-    state.width_m = vehicle.width_m;
+    said.centre = snapshot.ego.PointAt(vehicle.centre_x_m, 0.0);
+    said.yaw_rad = snapshot.ego.yaw_rad;
+    said.speed_mps = snapshot.ego.speed_mps;
+    said.accel_mps2 = snapshot.ego.accel_mps2;
+    said.yaw_rate_radps = snapshot.ego.yaw_rate_radps;
+    said.length_m = vehicle.length_m;
+    said.width_m = vehicle.width_m;
+    radio = is_device() ? snapshot.ego.PointAt(-kDeviceBehind_m, 0.0) : said.centre;
   } else {
     const Actor& actor = world_.actors()[static_cast<std::size_t>(actor_)];
     if (!actor.trajectory.Exists(time)) return std::nullopt;
     const Motion motion = actor.trajectory.At(time);
-    centre = motion.centre;
-    yaw = motion.yaw_rad;
-    state.speed_mps = motion.speed_mps;
-    state.accel_long_mps2 = motion.accel_mps2;
-    state.yaw_rate_radps = motion.yaw_rate_radps;
-    state.length_m = actor.size.length_m;
-    state.width_m = actor.size.width_m;
+    said.centre = motion.centre;
+    said.yaw_rad = motion.yaw_rad;
+    said.speed_mps = motion.speed_mps;
+    said.accel_mps2 = motion.accel_mps2;
+    said.yaw_rate_radps = motion.yaw_rate_radps;
+    said.length_m = actor.size.length_m;
+    said.width_m = actor.size.width_m;
+    radio = motion.centre;
   }
-  const Channel channel = Between(world_, snapshot, centre, subject_);
-  if (luck < channel.loss) return std::nullopt;
-
+  const Channel channel = Between(world_, snapshot, radio, subject_);
   const Vec2 bias(sender_.bias_east_m, sender_.bias_north_m);
-  const GeodeticPlace place =
-      GeodeticOf(plane_, centre + bias + position_error.horizontal, position_error.height_m);
-  const auto start_utime = static_cast<std::int64_t>(world_.scenario().start_utc_s) * 1000000;
-  state.position_utime = start_utime + std::llround(time * 1e6);
-  state.latitude_deg = place.latitude_deg;
-  state.longitude_deg = place.longitude_deg;
-  state.elevation_m = place.height_m;
-  state.accel_lat_mps2 = state.speed_mps * state.yaw_rate_radps;
-  const bool stands = std::abs(state.speed_mps) < 0.3;
+  said.time_s = time;
+  message.error = bias + position_error.horizontal;
+  said.centre = said.centre + bias + position_error.horizontal;
+  said.height_m = position_error.height_m;
+  said.accel_lat_mps2 = said.speed_mps * said.yaw_rate_radps;
+  const bool stands = std::abs(said.speed_mps) < 0.3;
   if (!stands || !has_heading_) {  // A standing receiver holds its last heading.
-    held_heading_rad_ = HeadingOf(yaw + place.turn_rad + heading_error + heading_noise);
+    held_yaw_rad_ = said.yaw_rad + heading_error + heading_noise;
     has_heading_ = true;
   }
-  state.heading_rad = held_heading_rad_;
-  state.speed_mps = stands ? 0.0 : state.speed_mps + speed_error + speed_noise;
+  said.yaw_rad = held_yaw_rad_;
+  said.speed_mps = stands ? 0.0 : said.speed_mps + speed_error + speed_noise;
   const GnssErrorSpec& e = spec.gnss;
-  state.semi_major_m = spec.semi_major_m > 0.0 ? spec.semi_major_m
-                                               : std::sqrt(e.bias_sigma_m * e.bias_sigma_m +
-                                                           e.markov_sigma_m * e.markov_sigma_m +
-                                                           e.white_sigma_m * e.white_sigma_m);
+  said.semi_major_m = spec.semi_major_m > 0.0 ? spec.semi_major_m
+                                              : std::sqrt(e.bias_sigma_m * e.bias_sigma_m +
+                                                          e.markov_sigma_m * e.markov_sigma_m +
+                                                          e.white_sigma_m * e.white_sigma_m);
+  message.time_s = time;
+  message.stamp_s = time;
+  message.signed_s = time;
+  message.latency_s = latency;
+  message.identity = IdentityOf(seed_, subject_, IdentityNumber(sender_, time));
+  message.msg_count = static_cast<int>((first_msg_count_ + number) % 128);
+  message.rssi_dbm = channel.rssi_dbm + fading;
+  message.is_lost = luck < channel.loss;
+  message.device = subject_;
+  message.vehicle = subject_;
+  message.honest = said;
+  return message;
+}
 
-  bsm_t bsm{};
-  Quantise(state, bsm);
-  bsm.rx_utime = state.position_utime + std::llround(latency * 1e6);
-  // Signed after most of the delay has passed; the rest is the radio.
-  bsm.generation_utime = state.position_utime + std::llround(0.8 * latency * 1e6);
-  bsm.msgCnt = static_cast<std::int16_t>((first_msg_count_ + number) % 128);
-  const Identity identity = IdentityOf(seed_, subject_, IdentityNumber(sender_, time));
-  std::copy(identity.id.begin(), identity.id.end(), std::begin(bsm.id));
-  std::copy(identity.certificate.begin(), identity.certificate.end(),
-            std::begin(bsm.certificate_digest));
-  bsm.signature_state = 1;
-  bsm.rssi_dbm = static_cast<float>(channel.rssi_dbm + fading);
-  return bsm;
+std::optional<bsm_t> BsmSender::Next() {
+  const auto message = NextMessage();
+  if (!message || message->is_lost) return std::nullopt;
+  return writer_.Encode(*message);
 }
 
 }  // namespace v2vouch::sim

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <GeographicLib/LocalCartesian.hpp>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <v2vouch/bsm_t.hpp>
 
 #include "sim/sensors/ego.h"
 #include "sim/sensors/gnss_error.h"
+#include "sim/sensors/message.h"
 #include "sim/world/world.h"
 
 namespace v2vouch::sim {
@@ -19,26 +18,23 @@ struct SenderState {
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
   double elevation_m = 0.0;
-  double semi_major_m = 1.0;
-  double speed_mps = 0.0;    ///< Negative in reverse.
-  double heading_rad = 0.0;  ///< Clockwise from true north.
+  double semi_major_m = 1.0;  ///< NaN = unavailable.
+  double speed_mps = 0.0;     ///< Negative in reverse.
+  double heading_rad = 0.0;   ///< Clockwise from true north.
   double accel_long_mps2 = 0.0;
   double accel_lat_mps2 = 0.0;
   double yaw_rate_radps = 0.0;  ///< Left positive.
   double length_m = 4.5;
   double width_m = 1.8;
+  Brakes brakes = Brakes::kByDeceleration;
 };
 
 /// Core data in J2735's integers: rounded to the nearest unit, clamped to the valid range, signs
 /// turned where J2735's differ (yaw rate). Everything else in `bsm` is left as it is.
 void Quantise(const SenderState& state, bsm_t& bsm);
 
-/// A sender's TemporaryID and certificate digest in its `number`-th identity, drawn from the seed.
-struct Identity {
-  std::array<std::uint8_t, 4> id{};
-  std::array<std::uint8_t, 8> certificate{};
-};
-Identity IdentityOf(std::uint64_t seed, std::uint32_t vehicle, int number);
+/// A sender's `number`-th identity, drawn from the seed.
+Identity IdentityOf(std::uint64_t seed, std::uint32_t device, int number);
 
 /// How many identities a sender has used up at `time_s`.
 int IdentityNumber(const SenderSpec& sender, double time_s);
@@ -49,22 +45,31 @@ class BsmSender {
   /// @param actor an index into World::actors(), or -1 for the ego's own echo.
   BsmSender(const World& world, int actor, std::uint64_t seed);
 
+  /// A transmitter carried along 30 m behind the ego, which tells of the ego for want of a vehicle.
+  /// @param device kFirstDeviceId or more.
+  static BsmSender Device(const World& world, std::uint32_t device, std::uint64_t seed);
+
   /// Time of the next position this sender will send [s of the scenario].
   [[nodiscard]] double next_time_s() const { return next_time_s_; }
 
   /// Makes the message of the position at next_time_s() and moves on to the next.
-  /// @return nullopt when the message is lost on its way or the vehicle is not there.
+  /// @return nullopt when the vehicle is not there.
+  std::optional<Message> NextMessage();
+
+  /// The same as it is received, without `seq`. @return nullopt also when it is lost on its way.
   std::optional<bsm_t> Next();
 
  private:
+  BsmSender(const World& world, int actor, std::uint32_t subject, std::uint64_t seed);
   void Advance();
+  [[nodiscard]] bool is_device() const { return subject_ >= kFirstDeviceId; }
 
   const World& world_;
   int actor_;
   std::uint32_t subject_;
   SenderSpec sender_;
   std::uint64_t seed_;
-  GeographicLib::LocalCartesian plane_;
+  MessageWriter writer_;
   Random errors_;
   GnssError position_;
   GaussMarkov speed_, heading_;
@@ -73,7 +78,7 @@ class BsmSender {
   double phase_s_ = 0.0;
   double next_time_s_ = 0.0;
   double last_time_s_ = 0.0;
-  double held_heading_rad_ = 0.0;
+  double held_yaw_rad_ = 0.0;
   bool has_heading_ = false;
 };
 

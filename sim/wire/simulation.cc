@@ -10,6 +10,7 @@
 #include "sim/sensors/bsm.h"
 #include "sim/sensors/camera.h"
 #include "sim/sensors/ego.h"
+#include "sim/sensors/message.h"
 #include "sim/sensors/radar.h"
 #include "sim/sensors/subject.h"
 #include "sim/sensors/truth.h"
@@ -51,10 +52,11 @@ struct Simulation::State {
     SimEvent event;
     std::int64_t stamp_utime = 0;
     std::optional<bsm_t> bsm;  // Numbered and encoded when its turn comes.
+    std::optional<truth_bsm_t> truth;
   };
 
   State(const World& w, std::uint64_t s)
-      : world(w), seed(s), odometry(w, s), gnss(w, s), truth(w, s) {
+      : world(w), seed(s), odometry(w, s), gnss(w, s), truth(w, s), writer(w.scenario()) {
     const Scenario& scenario = w.scenario();
     start_utime = static_cast<std::int64_t>(scenario.start_utc_s) * 1000000;
     for (std::size_t i = 0; i < scenario.vehicle.radars.size(); ++i) {
@@ -106,6 +108,7 @@ struct Simulation::State {
   void RunEgo(double until_s);
   void RunTruth(double until_s);
   void RunSenders(double until_s);
+  void Transmit(const Message& message);
   void Deliver(Timestamp before, std::vector<SimEvent>& events);
 
   const World& world;
@@ -119,6 +122,7 @@ struct Simulation::State {
   TruthWriter truth;
   Ticks odometry_ticks, gnss_ticks, truth_ticks;
   std::vector<BsmSender> senders;
+  MessageWriter writer;
   std::int64_t bsm_seq = 0;
   std::vector<Pending> queue;
 };
@@ -189,16 +193,21 @@ void Simulation::State::RunTruth(double until_s) {
 void Simulation::State::RunSenders(double until_s) {
   for (BsmSender& sender : senders) {
     while (sender.next_time_s() < until_s) {
-      std::optional<bsm_t> bsm = sender.Next();
-      if (!bsm) continue;
-      Pending pending;
-      pending.event.arrival = FromMicros(bsm->rx_utime);
-      pending.event.channel = "BSM";
-      pending.stamp_utime = bsm->generation_utime;
-      pending.bsm = *bsm;
-      queue.push_back(std::move(pending));
+      const std::optional<Message> message = sender.NextMessage();
+      if (message && !message->is_lost) Transmit(*message);
     }
   }
+}
+
+void Simulation::State::Transmit(const Message& message) {
+  const bsm_t bsm = writer.Encode(message);
+  Pending pending;
+  pending.event.arrival = FromMicros(bsm.rx_utime);
+  pending.event.channel = "BSM";
+  pending.stamp_utime = bsm.generation_utime;
+  pending.bsm = bsm;
+  pending.truth = writer.Truth(message, bsm);
+  queue.push_back(std::move(pending));
 }
 
 void Simulation::State::Deliver(Timestamp before, std::vector<SimEvent>& events) {
@@ -216,6 +225,12 @@ void Simulation::State::Deliver(Timestamp before, std::vector<SimEvent>& events)
       wire::Encode(*pending.bsm, pending.event.bytes);
     }
     events.push_back(std::move(pending.event));
+    if (pending.truth) {
+      pending.truth->seq = bsm_seq - 1;
+      SimEvent beside{events.back().arrival, "TRUTH_BSM", {}};
+      wire::Encode(*pending.truth, beside.bytes);
+      events.push_back(std::move(beside));
+    }
   }
   queue.erase(queue.begin(), queue.begin() + static_cast<std::ptrdiff_t>(count));
 }

@@ -20,8 +20,8 @@ struct SimEvent {
 };
 
 /// A scenario as a stream of events in order of arrival: SIM_SCENARIO once, then RADAR_*, CAMERA_*,
-/// EGO_MOTION, EGO_GNSS, BSM and TRUTH. Sensors with boxes only: a camera's `source` decides
-/// between CAMERA_<NAME> and CAMERA_<NAME>_DETECTED.
+/// EGO_MOTION, EGO_GNSS, BSM with TRUTH_BSM right behind it, and TRUTH. Sensors with boxes only: a
+/// camera's `source` decides between CAMERA_<NAME> and CAMERA_<NAME>_DETECTED.
 ///
 /// The same scenario and seed give the same bytes (per toolchain). Time 0 of the scenario is its
 /// start_utc_s; the computer's clock is UTC.

@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <v2vouch/bsm_t.hpp>
 #include <v2vouch/camera_detections_t.hpp>
 #include <v2vouch/radar_scan_t.hpp>
+#include <v2vouch/truth_bsm_t.hpp>
 #include <v2vouch/truth_list_t.hpp>
 
 #include "daemon/wire/codec.h"
+#include "sim/sensors/bsm.h"
 
 namespace v2vouch::sim {
 namespace {
@@ -83,6 +87,60 @@ TEST(Simulation, EventsComeInOrderOfArrivalAndCameraLate) {
   EXPECT_EQ(counts["TRUTH"], 120);
   EXPECT_GE(counts["RADAR_FRONT"], 119);
   EXPECT_GE(counts["BSM"], 50);
+}
+
+// Without attacks the channel BSM holds what the units themselves make, byte for byte, and
+// TRUTH_BSM says of each message that it is honest.
+TEST(Simulation, HonestMessagesAreTheUnitsOwnAndTheirTruthSaysSo) {
+  const auto world = Shipped("left_turn", 3);
+  std::multiset<std::string> sent;
+  for (std::size_t i = 0; i < world->actors().size(); ++i) {
+    if (!world->actors()[i].has_v2v) continue;
+    BsmSender sender(*world, static_cast<int>(i), 3);
+    while (sender.next_time_s() < world->scenario().duration_s) {
+      std::vector<std::uint8_t> bytes;
+      if (const auto bsm = sender.Next()) {
+        wire::Encode(*bsm, bytes);
+        sent.insert(std::string(bytes.begin(), bytes.end()));
+      }
+    }
+  }
+  const auto events = AllEvents(*world, 3);
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (events[i].channel != "BSM") continue;
+    bsm_t bsm = As<bsm_t>(events[i]);
+    EXPECT_EQ(bsm.seq, count++);
+    ASSERT_LT(i + 1, events.size());
+    ASSERT_EQ(events[i + 1].channel, "TRUTH_BSM");
+    const auto truth = As<truth_bsm_t>(events[i + 1]);
+    EXPECT_EQ(events[i + 1].arrival, events[i].arrival);
+    EXPECT_EQ(truth.seq, bsm.seq);
+    EXPECT_EQ(truth.utime, bsm.rx_utime);
+    EXPECT_TRUE(std::equal(std::begin(bsm.id), std::end(bsm.id), std::begin(truth.sender_id)));
+    EXPECT_EQ(truth.is_attacker, 0);
+    EXPECT_EQ(truth.is_attack, 0);
+    EXPECT_EQ(truth.attack, "");
+    EXPECT_GT(truth.vehicle_id, 0);
+    EXPECT_EQ(truth.device_id, truth.vehicle_id);
+    // Half a unit of each field: 8 mm of place, 0.00625 degrees, 0.01 m/s, 0.005 m/s2, 5 mm.
+    EXPECT_NEAR(truth.claimed_x_m, truth.honest_x_m, 0.008);
+    EXPECT_NEAR(truth.claimed_y_m, truth.honest_y_m, 0.008);
+    EXPECT_NEAR(AngleDifference(truth.claimed_yaw_rad, truth.honest_yaw_rad), 0.0, 1.1e-4);
+    EXPECT_NEAR(truth.claimed_speed_mps, truth.honest_speed_mps, 0.0101);
+    EXPECT_NEAR(truth.claimed_accel_mps2, truth.honest_accel_mps2, 0.0051);
+    EXPECT_NEAR(truth.claimed_length_m, truth.honest_length_m, 0.0051);
+    EXPECT_GE(truth.age_s, 0.0699);
+    EXPECT_LE(truth.age_s, 0.2001);
+    bsm.seq = 0;
+    std::vector<std::uint8_t> bytes;
+    wire::Encode(bsm, bytes);
+    const auto twin = sent.find(std::string(bytes.begin(), bytes.end()));
+    ASSERT_NE(twin, sent.end()) << "message " << count;
+    sent.erase(twin);
+  }
+  EXPECT_GT(count, 1000);
+  EXPECT_LT(sent.size(), 10u);  // Under way when the scenario ends.
 }
 
 TEST(LeftTurn, CriticalCarIsSeenLongThenHiddenThreeToFiveSecondsThenSeenAgain) {
