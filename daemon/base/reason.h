@@ -44,7 +44,9 @@ enum class Reason : std::uint8_t {
   kBsmTableFull,
   kBsmSignature,
   kBsmImplausible,
-  kNoGnss,  ///< The car does not know yet where it is.
+  kBsmContradicted,  ///< Far from where the sensors see its sender: somebody else speaks in its
+                     ///< name.
+  kNoGnss,           ///< The car does not know yet where it is.
   kGnssUnusable,
   kGnssJump,
   // Numerical failures inside one track or sender, which was dropped.

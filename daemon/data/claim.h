@@ -16,8 +16,9 @@ namespace v2vouch {
 struct Claim {
   SenderId sender = 0;
   CertificateDigest certificate{};
-  Timestamp received{};  ///< Orders claims.
-  double age_s = 0.0;    ///< Reception minus claimed time of the content, >= 0.
+  Timestamp received{};     ///< Orders claims.
+  Timestamp first_heard{};  ///< When this sender was heard for the first time.
+  double age_s = 0.0;       ///< Reception minus claimed time of the content, >= 0.
   Eigen::Vector3d p_E = Eigen::Vector3d::Zero();  ///< Centre of the footprint, ECEF [m].
   Eigen::Vector3d course_E =
       Eigen::Vector3d::UnitX();  ///< Unit vector of the vehicle's x axis, ECEF.

@@ -118,7 +118,16 @@ void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
   if (place.is_known && HorizontalDistance(place.p_E, claim->p_E) > config.timeline.interest_m) {
     return Tell(bsm, std::nullopt, outputs);
   }
-  timeline.Insert(TimedClaim{*claim, bsm.seq, bias->Estimate(bsm.sender)}, outputs);
+  Claim followed = *claim;
+  if (const SenderTrack* sender = intake.Find(bsm.sender)) {
+    followed.first_heard = sender->first_received;
+  }
+  timeline.Insert(TimedClaim{followed, bsm.seq, bias->Estimate(bsm.sender)}, outputs);
+  for (const Diagnostic& diagnostic : outputs.diagnostics) {
+    if (diagnostic.reason == Reason::kBsmContradicted && diagnostic.stamp == bsm.stamp) {
+      return Tell(bsm, diagnostic.reason, outputs);
+    }
+  }
   // Whoever vouches for a vehicle keeps its place in the table, whatever floods it.
   const TrustState trust = timeline.priority().TrustOf(bsm.sender);
   intake.Pin(bsm.sender, trust == TrustState::kValidated || trust == TrustState::kBridged);
@@ -176,7 +185,7 @@ void Perception::State::Publish(bool is_correction, Outputs& outputs) {
   outputs.priority.revision = revision;
   outputs.priority.X_OB = ego_at.X_OB;
   outputs.priority.sectors = frame.sectors;
-  outputs.priority.ego_gnss_suspect = timeline.priority().alignment().is_suspect();
+  outputs.priority.ego_gnss_suspect = timeline.priority().is_ego_gnss_suspect();
   timeline.priority().Publish(at, ego_at, outputs.priority);
 
   if (at - v2v_listed >= FromSeconds(kV2vListPeriod_s)) {
@@ -225,7 +234,7 @@ void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
   outputs.priority.stamp = at_v2v;
   outputs.priority.X_OB = ego_at.X_OB;
   outputs.priority.tracks.clear();
-  outputs.priority.ego_gnss_suspect = state.timeline.priority().alignment().is_suspect();
+  outputs.priority.ego_gnss_suspect = state.timeline.priority().is_ego_gnss_suspect();
   state.timeline.priority().Publish(at_v2v, ego_at, outputs.priority);
 
   // Nobody vouches for anything any more: empty and blind, which is not the same as "nothing
@@ -244,7 +253,7 @@ Timestamp Perception::newest_frame() const {
 int Perception::sender_count() const { return static_cast<int>(state_->intake.senders().size()); }
 
 bool Perception::ego_gnss_suspect() const {
-  return state_->timeline.priority().alignment().is_suspect();
+  return state_->timeline.priority().is_ego_gnss_suspect();
 }
 
 bool Perception::IsRadarAlive(int radar) const {

@@ -17,29 +17,66 @@ constexpr double kPairReach_m = 20.0;   // No claim, however poor, starts a pair
 constexpr double kUnknownAccel_mps2 = 4.0;
 constexpr double kOwnMotionFloor_m = 2.0;
 constexpr double kSeen_s = 0.15;  // Co-observed means: a hit of the same moment, not of support's.
+constexpr int kMostVelocityDoubts = 2;
 constexpr double kHeirSpeed_mps = 2.0;
 constexpr double kHeirYaw_rad = FromDegrees(20.0);
 
 }  // namespace
 
-// Whether the message continues the last one: the place where the last would have the sender now.
-void PriorityPerception::JudgeOwnMotion(Link& link, const ClaimInOdometry& here) {
+std::optional<KinematicState> PriorityPerception::SensedAt(std::uint64_t local_id,
+                                                           Timestamp stamp) const {
+  if (local_id == 0) return std::nullopt;
+  const auto sensed = std::ranges::find_if(
+      sensed_, [&](const Sensed& other) { return other.track.id == local_id; });
+  const double dt_s = ToSeconds(stamp - sensed_stamp_);
+  if (sensed == sensed_.end() || dt_s > kMaxFrameAge_s) return std::nullopt;
+  KinematicState state = sensed->track.state_O;
+  if (dt_s > 0.0) PredictCtra(state, dt_s, settings_->priority.filter.motion);
+  return state;
+}
+
+// A claim far from where the sensors see its sender, between others that fit: an id that two
+// devices use. The vehicle goes on by the claims that fit; a lasting departure is the sender's own.
+bool PriorityPerception::IsSomebodyElses(Link& link, const PriorityVehicle* vehicle,
+                                         const ClaimInOdometry& here) {
   const TrustConfig& config = settings_->priority.trust;
-  if (!link.has_last) return link.trust.OnMessage(here.stamp, true, config);
-  const ClaimInOdometry& last = link.last;
-  const double dt_s = std::max(0.0, ToSeconds(here.stamp - last.stamp));
-  const double speed_mps = 0.5 * (last.speed_mps + here.speed_mps);
-  const double yaw_rad = last.yaw_rad + 0.5 * AngleDifference(here.yaw_rad, last.yaw_rad);
-  const Eigen::Vector2d expected =
-      last.p_O + speed_mps * dt_s * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
-  const double distance_m = (here.p_O - expected).norm();
-  const double sigma_m = std::sqrt(0.5 * (last.noise.trace() + here.noise.trace()));
-  const double tolerance_m =
-      kOwnMotionFloor_m + 3.0 * sigma_m + 0.5 * kUnknownAccel_mps2 * dt_s * dt_s;
-  link.trust.OnMessage(here.stamp, distance_m <= tolerance_m, config);
-  if (const auto finding = CheckJump(distance_m, dt_s, config)) {
-    link.trust.OnFinding(here.stamp, *finding, MayAccuse());
+  if (vehicle == nullptr || !vehicle->is_supported || !link.trust.is_relied_on()) return false;
+  const ResidualHistory& history = link.trust.history();
+  const auto sensed = SensedAt(vehicle->local_id, here.stamp);
+  if (!sensed || !history.is_settled()) return false;
+  const Eigen::Vector2d off_O = here.p_O - sensed->mean.head<2>() - history.mean_O();
+  const double limit_m = config.odd_claim_m + 2.0 * std::sqrt(0.5 * here.noise.trace()) +
+                         config.stale_position_s * std::abs(sensed->mean[kSpeed]);
+  if (off_O.norm() <= limit_m) {
+    link.odd_claims = 0;
+    return false;
   }
+  return ++link.odd_claims < config.odd_claims;
+}
+
+// Whether the message continues the last one: the place where the last would have the sender now.
+// What the message stream has against a sender does not count where the sensors see its vehicle
+// just where it says it is: they judge it better.
+void PriorityPerception::JudgeMessages(Link& link, const PriorityVehicle* vehicle,
+                                       const Claim& claim, const ClaimInOdometry& here) {
+  const TrustConfig& config = settings_->priority.trust;
+  bool is_consistent = true;
+  if (link.has_last) {
+    const ClaimInOdometry& last = link.last;
+    const double dt_s = std::max(0.0, ToSeconds(here.stamp - last.stamp));
+    const double speed_mps = 0.5 * (last.speed_mps + here.speed_mps);
+    const double yaw_rad = last.yaw_rad + 0.5 * AngleDifference(here.yaw_rad, last.yaw_rad);
+    const Eigen::Vector2d expected =
+        last.p_O + speed_mps * dt_s * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
+    const double sigma_m = std::sqrt(0.5 * (last.noise.trace() + here.noise.trace()));
+    is_consistent = (here.p_O - expected).norm() <=
+                    kOwnMotionFloor_m + 3.0 * sigma_m + 0.5 * kUnknownAccel_mps2 * dt_s * dt_s;
+  }
+  link.trust.OnMessage(here.stamp, is_consistent, config);
+  if (!claim.finding) return;
+  const bool is_seen = vehicle != nullptr && vehicle->is_supported && link.trust.is_relied_on();
+  if (is_seen && link.odd_claims == 0 && claim.finding->severity == Verdict::kWithdraw) return;
+  link.trust.OnFinding(here.stamp, *claim.finding, MayAccuse(here.stamp));
 }
 
 void PriorityPerception::ObservePairs(Link& link, const ClaimInOdometry& here) {
@@ -83,7 +120,7 @@ PriorityVehicle* PriorityPerception::Inherit(Link& link, const ClaimInOdometry& 
     rival->trust.OnFinding(here.stamp,
                            {"contested_identity", Verdict::kWithdraw, "silence_s",
                             ToSeconds(here.stamp - vehicle.handover), change.contest_s},
-                           MayAccuse());
+                           MayAccuse(here.stamp));
     Report(*rival, here.stamp, outputs);
     return &vehicle;
   }
@@ -142,16 +179,19 @@ void PriorityPerception::CompareWithSensors(Link& link, const PriorityVehicle* v
   } else if (const PairTable::Pair* pair = pairs_.AssignedTo(link.sender)) {
     local_id = pair->track_id;
   }
+  // While the sensors have but a part of it they drag their track along the part.
   const Sensed* sensed = FindSensed(local_id);
-  const double dt_s = ToSeconds(here.stamp - sensed_stamp_);
-  if (sensed == nullptr || dt_s > kMaxFrameAge_s) return;
-  KinematicState state = sensed->track.state_O;
-  if (dt_s > 0.0) PredictCtra(state, dt_s, config.filter.motion);
-  const CoObservation observation = ForTrust(here, state);
-  link.trust.OnCoObservation(observation, MayAccuse(), config.trust);
+  if (sensed != nullptr && sensed->is_partial && link.trust.is_relied_on()) return;
+  const auto state = SensedAt(local_id, here.stamp);
+  if (!state) return;
+  CoObservation observation = ForTrust(here, *state);
+  observation.is_ego_shifted = IsShifted(here.stamp);
+  observation.shift_O = common_.shift_O();
+  const bool may_accuse = MayAccuse(here.stamp) && common_.HasWitnessAgainst(link.sender);
+  link.trust.OnCoObservation(observation, may_accuse, config.trust);
   if (vehicle == nullptr || !link.trust.is_relied_on() || alignment_.is_suspect()) return;
   const Eigen::Matrix2d R_LO = alignment_.X_LO().rotation();
-  const Eigen::Matrix2d P = state.covariance.topLeftCorner<2, 2>() + here.noise + here.alignment;
+  const Eigen::Matrix2d P = state->covariance.topLeftCorner<2, 2>() + here.noise + here.alignment;
   residuals_.push_back(
       {link.sender, here.stamp, R_LO * observation.residual_O, R_LO * P * R_LO.transpose()});
   alignment_.Vouch(here.stamp);
@@ -172,18 +212,25 @@ void PriorityPerception::UseClaim(Link& link, PriorityVehicle& vehicle,
     return;
   }
   vehicle.misfits_in_a_row = fit.is_used && fit.is_velocity_used ? 0 : vehicle.misfits_in_a_row + 1;
+  if (vehicle.misfits_in_a_row >= config.bridge.max_misfits && fit.is_used) {
+    // The place fits and the motion does not: it was last measured by a part of the vehicle, or the
+    // vehicle has braked or turned. Where it can be is bounded all the same.
+    vehicle.filter.DoubtVelocity();
+    vehicle.misfits_in_a_row = 0;
+    if (++vehicle.velocity_doubts > kMostVelocityDoubts) return EndVehicle(vehicle);
+  }
   if (vehicle.misfits_in_a_row >= config.bridge.max_misfits) {
     return link.trust.OnFinding(here.stamp,
                                 {"bridge_misfit", Verdict::kWithdraw, "position_nis",
                                  fit.position_nis, config.filter.position_gate},
-                                MayAccuse());
+                                MayAccuse(here.stamp));
   }
   const Eigen::Vector2d p_O = vehicle.filter.mean().head<2>();
   if (!vehicle.CanReach(p_O, here.stamp, config.bridge)) {
     link.trust.OnFinding(here.stamp,
                          {"out_of_reach", Verdict::kWithdraw, "distance_m",
                           (p_O - vehicle.coast.state().mean.head<2>()).norm(), 0.0},
-                         MayAccuse());
+                         MayAccuse(here.stamp));
   }
 }
 
@@ -201,6 +248,8 @@ void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
                                .span_s = evidence.span_s(),
                                .is_nis_consistent = evidence.is_nis_consistent(),
                                .is_level_plausible = evidence.level() <= config.safe.max_level,
+                               .is_size_plausible = IsSizePlausible(
+                                   link.length_m, link.width_m, sensed->track.extent, config.trust),
                                .margin = pairs_.Margin(*pair),
                                .min_margin = config.safe.min_margin,
                                .is_assigned = pair->is_assigned,

@@ -60,7 +60,7 @@ struct PriorityConfig {
   IdentityChangeConfig identity_change;
   double interest_m = 30.0;  ///< Senders are followed within this distance of a LOCAL track.
   double contact_s = 5.0;    ///< A sender silent for so long is forgotten.
-  int max_senders = 64;      ///< Followed at a time.
+  int max_senders = 128;     ///< Followed at a time.
 
   template <class Archive>
   void Visit(Archive& a) {

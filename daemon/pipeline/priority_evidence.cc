@@ -96,6 +96,10 @@ CoObservation ForTrust(const ClaimInOdometry& claim, const KinematicState& sense
   observation.speed_sigma_mps = std::sqrt(sensed.covariance(kSpeed, kSpeed));
   observation.yaw_residual_rad = velocity.yaw_rad;
   observation.yaw_sigma_rad = std::sqrt(sensed.covariance(kYaw, kYaw));
+  observation.accel_residual_mps2 = claim.accel_mps2 - sensed.mean[kAccel];
+  observation.accel_sigma_mps2 = std::sqrt(sensed.covariance(kAccel, kAccel));
+  observation.sensed_sigma_m =
+      std::sqrt(0.5 * (sensed.covariance(kX, kX) + sensed.covariance(kY, kY)));
   return observation;
 }
 

@@ -132,6 +132,7 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
     vehicle.regained_hits = 0;
     vehicle.regaining_id = 0;
     vehicle.elsewhere_id = 0;
+    vehicle.velocity_doubts = 0;
     vehicle.empty = {};
     link->trust.OnSensorsLost();
   }
@@ -150,18 +151,14 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
   LookForReturn(vehicle, frame.stamp);
   if (vehicle.is_supported) return link->trust.OnSensorsRegained();
   if (const auto finding = Contradiction(vehicle, frame.stamp)) {
-    link->trust.OnFinding(frame.stamp, *finding, MayAccuse());
+    link->trust.OnFinding(frame.stamp, *finding, MayAccuse(frame.stamp));
     return Report(*link, frame.stamp, outputs);
   }
   LookAtPlace(vehicle, frame, map);
-  if (vehicle.empty.log_ratio() <= config.bridge.empty_log_ratio) {
-    link->trust.OnFinding(frame.stamp,
-                          {"empty_place", Verdict::kWithdraw, "log_ratio",
-                           vehicle.empty.log_ratio(), config.bridge.empty_log_ratio},
-                          MayAccuse());
-    return Report(*link, frame.stamp, outputs);
-  }
-  if (silence_s >= config.bridge.max_gap_s ||
+  // Where we carried the vehicle there is none. That may be our own error: what the sender claims
+  // is looked at beside (LookAtClaims), and blamed where it is empty, too.
+  if (vehicle.empty.log_ratio() <= config.bridge.empty_log_ratio ||
+      silence_s >= config.bridge.max_gap_s ||
       vehicle.BudgetLeft_s(frame.stamp, config.bridge) <= 0.0 ||
       vehicle.filter.position_sigma_m() >= config.bridge.max_sigma_m) {
     EndVehicle(vehicle);

@@ -13,6 +13,10 @@ namespace {
 constexpr double kAlignmentStep_m = 2.0;
 constexpr double kHeightMemory = 0.1;  // Weight of a new height in the smoothed one.
 
+Eigen::Vector2d VelocityOf(const ClaimInOdometry& claim) {
+  return claim.speed_mps * Eigen::Vector2d(std::cos(claim.yaw_rad), std::sin(claim.yaw_rad));
+}
+
 double Smoothed(const std::optional<double>& old, double value) {
   return old ? *old + kHeightMemory * (value - *old) : value;
 }
@@ -60,24 +64,30 @@ void PriorityPerception::OnFrame(const LocalFrame& frame, const VisibilityMap& m
   Remember(frame, map);
   for (PriorityVehicle& vehicle : vehicles_) StepVehicle(vehicle, frame, map, outputs);
   DropEnded();
+  LookAtClaims(frame, map, outputs);
+  DropEnded();
+  JudgeCommonMode(frame.stamp);
   pairs_.Expire(frame.stamp, config.safe);
   std::erase_if(links_, [&](const Link& link) {
-    return !link.trust.has_penalty() && VehicleOf(link.sender) == nullptr &&
+    return VehicleOf(link.sender) == nullptr &&
            ToSeconds(frame.stamp - link.last.stamp) > config.contact_s;
   });
 }
 
-void PriorityPerception::OnClaim(const Claim& claim, const EgoState& /*ego*/, Outputs& outputs) {
+void PriorityPerception::OnClaim(const Claim& claim, const EgoState& ego, Outputs& outputs) {
   const PriorityConfig& config = settings_->priority;
   if (!alignment_.is_ready()) return outputs.Refuse(Reason::kNoGnss, claim.received);
   const ClaimInOdometry here = alignment_.ToOdometry(claim, claim.received);
   if (config.association == AssociationMode::kPaper) return paper_.OnClaim(here, config.paper);
 
-  Link* link = FollowSender(claim, here);
+  Link* link = FollowSender(claim, here, ego);
   if (link == nullptr) return;
-  JudgeOwnMotion(*link, here);
-  ObservePairs(*link, here);
   PriorityVehicle* vehicle = VehicleOf(link->sender);
+  if (IsSomebodyElses(*link, vehicle, here)) {
+    return outputs.Refuse(Reason::kBsmContradicted, claim.received);
+  }
+  JudgeMessages(*link, vehicle, claim, here);
+  ObservePairs(*link, here);
   if (vehicle == nullptr) vehicle = Inherit(*link, here, outputs);
   link = FindLink(claim.sender);  // Inherit may have moved it.
   CompareWithSensors(*link, vehicle, here);
@@ -88,6 +98,17 @@ void PriorityPerception::OnClaim(const Claim& claim, const EgoState& /*ego*/, Ou
   }
   link->last = here;
   link->has_last = true;
+  if (link->trust.has_penalty() || link->place.has_doubt()) {
+    tombstones_.Set({.sender = link->sender,
+                     .certificate = link->certificate,
+                     .last = here.stamp,
+                     .p_O = here.p_O,
+                     .v_O = VelocityOf(here),
+                     .penalty = link->trust.penalty(),
+                     .place = link->place});
+  } else {
+    tombstones_.Remove(link->sender);
+  }
   Report(*link, here.stamp, outputs);
   DropEnded();
 }
@@ -98,7 +119,7 @@ void PriorityPerception::SetBiasPrior(SenderId sender, const BiasEstimate& estim
 
 void PriorityPerception::Publish(Timestamp at, const EgoState& ego_at, TrackList& priority) const {
   const PriorityConfig& config = settings_->priority;
-  priority.ego_gnss_suspect = alignment_.is_suspect();
+  priority.ego_gnss_suspect = is_ego_gnss_suspect();
   const bool has_place = alignment_.is_ready();
   const double height_m = has_place ? alignment_.EgoGeodetic(ego_at).height_m : 0.0;
   const auto place = [&](PublishedTrack& line) {
@@ -151,7 +172,10 @@ void PriorityPerception::Publish(Timestamp at, const EgoState& ego_at, TrackList
 
 TrustState PriorityPerception::TrustOf(SenderId sender) const {
   const auto at = std::ranges::lower_bound(links_, sender, {}, &Link::sender);
-  return at != links_.end() && at->sender == sender ? at->trust.state() : TrustState::kUnknown;
+  if (at != links_.end() && at->sender == sender) return at->trust.state();
+  const Tombstones::Stone* stone = tombstones_.Find(sender);
+  const bool has_penalty = stone != nullptr && stone->penalty.state != TrustState::kNone;
+  return has_penalty ? stone->penalty.state : TrustState::kUnknown;
 }
 
 std::optional<BiasEstimate> PriorityPerception::BiasOf(SenderId sender) const {
@@ -205,14 +229,17 @@ std::optional<BiasPrior> PriorityPerception::PriorOf(const Link& link) const {
 }
 
 PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
-                                                           const ClaimInOdometry& here) {
+                                                           const ClaimInOdometry& here,
+                                                           const EgoState& ego) {
   const PriorityConfig& config = settings_->priority;
   Link* link = FindLink(claim.sender);
   if (link == nullptr) {
     const auto is_near = [&](const Eigen::Vector2d& p_O) {
       return (p_O - here.p_O).squaredNorm() < config.interest_m * config.interest_m;
     };
+    const double distance_m = (ego.X_OB.origin().vector() - here.p_O).norm();
     const bool is_of_interest =
+        distance_m < config.trust.place.max_distance_m ||
         std::ranges::any_of(
             sensed_,
             [&](const Sensed& sensed) { return is_near(sensed.track.state_O.mean.head<2>()); }) ||
@@ -220,27 +247,59 @@ PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
           return is_near(vehicle.filter.mean().head<2>());
         });
     if (!is_of_interest) return nullptr;
-    if (links_.size() >= static_cast<std::size_t>(config.max_senders)) {
-      // Room is made by the stranger not heard for longest; penalties are not washed off and
-      // vehicles not lost by somebody sending under many ids.
-      auto oldest = links_.end();
-      for (auto other = links_.begin(); other != links_.end(); ++other) {
-        if (other->trust.has_penalty() || VehicleOf(other->sender) != nullptr) continue;
-        if (oldest == links_.end() || other->last.stamp < oldest->last.stamp) oldest = other;
-      }
-      if (oldest == links_.end()) return nullptr;
-      pairs_.DropSender(oldest->sender);
-      links_.erase(oldest);
+    const Tombstones::Stone* own = tombstones_.Find(claim.sender);
+    std::optional<Tombstones::Stone> stone;
+    if (own != nullptr) {
+      stone = *own;
+    } else {
+      stone = tombstones_.TakeFor(claim.sender, claim.certificate, claim.first_heard, here.stamp,
+                                  here.p_O, VelocityOf(here), config.trust.tombstone);
+    }
+    const bool is_penalised = stone && stone->penalty.state != TrustState::kNone;
+    if (links_.size() >= static_cast<std::size_t>(config.max_senders) && !MakeRoom(is_penalised)) {
+      return nullptr;
     }
     const auto at = std::ranges::lower_bound(links_, claim.sender, {}, &Link::sender);
     link = &*links_.insert(at, Link{});
     link->sender = claim.sender;
     link->last = here;
+    if (stone) {
+      link->trust.Inherit(stone->penalty);
+      link->place = stone->place;
+    }
   }
+  link->length_m = claim.length_m;
+  link->width_m = claim.width_m;
   link->certificate = claim.certificate;
   link->is_accuracy_poor = claim.accuracy_is_poor;
   if (claim.has_elevation) link->height_m = Smoothed(link->height_m, claim.height_m);
   return link;
+}
+
+// Room is made by whom the least is lost with: the penalised, whose stones remember them, then
+// strangers away from all tracks, then other strangers; among equals whoever was not heard for
+// longest. Nobody with a vehicle is given up, so that no flood of identities drives them out.
+bool PriorityPerception::MakeRoom(bool for_penalised) {
+  const auto rank = [&](const Link& link) {
+    if (link.trust.has_penalty()) return 0;
+    return pairs_.AssignedTo(link.sender) == nullptr ? 1 : 2;
+  };
+  auto least = links_.end();
+  int least_rank = 0;
+  for (auto link = links_.begin(); link != links_.end(); ++link) {
+    if (VehicleOf(link->sender) != nullptr) continue;
+    const int link_rank = rank(*link);
+    if (for_penalised && link_rank > 0) continue;
+    if (least == links_.end() ||
+        std::pair(link_rank, link->last.stamp) < std::pair(least_rank, least->last.stamp)) {
+      least = link;
+      least_rank = link_rank;
+    }
+  }
+  if (least == links_.end()) return false;
+  pairs_.DropSender(least->sender);
+  links_.erase(least);
+  return true;
 }
 
 void PriorityPerception::EndVehicle(PriorityVehicle& vehicle) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,7 +17,10 @@
 #include "daemon/data/track.h"
 #include "daemon/pipeline/priority_config.h"
 #include "daemon/priority/priority_vehicle.h"
+#include "daemon/trust/claimed_place.h"
+#include "daemon/trust/common_mode.h"
 #include "daemon/trust/sender_trust.h"
+#include "daemon/trust/tombstones.h"
 #include "daemon/visibility/visibility.h"
 
 namespace v2vouch {
@@ -33,8 +37,13 @@ namespace v2vouch {
 /// A bridge that merely ends leaves no blame; a contradiction withdraws the sender (SUSPECT).
 /// V2V alone creates nothing: without a LOCAL track there is no vehicle.
 ///
-/// While the ego's GNSS is suspect nobody is validated or accused; claims are still used, through
-/// the frozen alignment.
+/// Every sender within reach is judged, validated or not: by its message stream (Claim::finding),
+/// by what the sensors see at its place (ClaimedPlace), by its residuals to the LOCAL track it is
+/// taken for. Penalties and doubts outlive the identity (Tombstones).
+///
+/// While the alignment is suspect nobody is validated or accused; claims are still used, through
+/// the frozen alignment. While all senders are off in the same way (CommonMode) that shift counts
+/// as our own: nobody is accused, and a sender is judged by what is left of its residual.
 ///
 /// Copyable: a copy is a checkpoint. Bounded by max_senders and max_pairs. Events must come in
 /// order of time; the same events give the same bits.
@@ -57,6 +66,10 @@ class PriorityPerception {
 
   [[nodiscard]] const Alignment& alignment() const { return alignment_; }
   [[nodiscard]] TrustState TrustOf(SenderId sender) const;
+  /// The ego's place is in doubt: its GNSS has jumped, or all senders are off alike.
+  [[nodiscard]] bool is_ego_gnss_suspect() const {
+    return alignment_.is_suspect() || IsShifted(sensed_stamp_);
+  }
   /// Bias of a validated sender; nullopt: nothing learnt. Axes east and north.
   [[nodiscard]] std::optional<BiasEstimate> BiasOf(SenderId sender) const;
   /// Raw sensor-confirmed residuals of the last event, at most one.
@@ -74,6 +87,10 @@ class PriorityPerception {
     ClaimInOdometry last;
     bool has_last = false;
     bool is_accuracy_poor = false;
+    std::optional<double> length_m;  // As claimed.
+    std::optional<double> width_m;
+    ClaimedPlace place;
+    int odd_claims = 0;              // In a row that are not where the sensors see the sender.
     std::optional<double> height_m;  // Smoothed; GNSS heights are noisy.
     std::optional<BiasEstimate> prior_en;
     std::uint64_t heir_of = 0;  // Vehicle it may continue under this new id; 0 = none.
@@ -93,11 +110,16 @@ class PriorityPerception {
   };
 
   Link* FindLink(SenderId sender);
-  Link* FollowSender(const Claim& claim, const ClaimInOdometry& here);
+  Link* FollowSender(const Claim& claim, const ClaimInOdometry& here, const EgoState& ego);
+  bool MakeRoom(bool for_penalised);
   Sensed* FindSensed(std::uint64_t local_id);
   PriorityVehicle* VehicleOf(SenderId sender);
   [[nodiscard]] bool IsHeld(std::uint64_t local_id) const;
-  [[nodiscard]] bool MayAccuse() const { return !alignment_.is_suspect(); }
+  [[nodiscard]] bool IsHeldByAnother(std::uint64_t local_id, SenderId sender) const;
+  [[nodiscard]] bool IsShifted(Timestamp now) const;
+  [[nodiscard]] bool MayAccuse(Timestamp now) const {
+    return !alignment_.is_suspect() && !IsShifted(now);
+  }
   [[nodiscard]] std::optional<BiasPrior> PriorOf(const Link& link) const;
 
   // Frame.
@@ -109,8 +131,19 @@ class PriorityPerception {
   std::optional<Finding> Contradiction(PriorityVehicle& vehicle, Timestamp stamp) const;
   void LookAtPlace(PriorityVehicle& vehicle, const LocalFrame& frame, const VisibilityMap& map);
 
+  // Looks at senders that no sensor vouches for, after each frame.
+  void LookAtClaims(const LocalFrame& frame, const VisibilityMap& map, Outputs& outputs);
+  [[nodiscard]] std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> LookAround(
+      const Link& link, const LocalFrame& frame, const VisibilityMap& map) const;
+  [[nodiscard]] bool IsVouchedFor(const Link& link) const;
+  void JudgeCommonMode(Timestamp now);
+
   // Claim.
-  void JudgeOwnMotion(Link& link, const ClaimInOdometry& here);
+  bool IsSomebodyElses(Link& link, const PriorityVehicle* vehicle, const ClaimInOdometry& here);
+  void JudgeMessages(Link& link, const PriorityVehicle* vehicle, const Claim& claim,
+                     const ClaimInOdometry& here);
+  [[nodiscard]] std::optional<KinematicState> SensedAt(std::uint64_t local_id,
+                                                       Timestamp stamp) const;
   void ObservePairs(Link& link, const ClaimInOdometry& here);
   PriorityVehicle* Inherit(Link& link, const ClaimInOdometry& here, Outputs& outputs);
   void CompareWithSensors(Link& link, const PriorityVehicle* vehicle, const ClaimInOdometry& here);
@@ -127,9 +160,13 @@ class PriorityPerception {
   std::vector<Link> links_;     // By sender.
   std::vector<Sensed> sensed_;  // By LOCAL id; all tracks of the newest frame.
   Timestamp sensed_stamp_{};
+  std::vector<SenderResidual> residual_means_;              // Work space of JudgeCommonMode().
   std::vector<std::pair<std::uint64_t, Timestamp>> parts_;  // Work space of Remember().
   PairTable pairs_;
   std::vector<PriorityVehicle> vehicles_;  // By id; id 0 = ended in this step.
+  Tombstones tombstones_;
+  CommonMode common_;
+  std::optional<Timestamp> shifted_;  // When all senders were last off alike.
   PaperList paper_;
   std::vector<BiasResidual> residuals_;
 };

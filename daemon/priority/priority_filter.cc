@@ -11,6 +11,8 @@ namespace v2vouch {
 namespace {
 
 constexpr double kMaxStep_s = 0.1;  // CtraStep's own limit.
+constexpr double kDoubtSpeed_mps = 1.5;
+constexpr double kDoubtYaw_rad = FromDegrees(10.0);
 constexpr double kLowSpeed_mps = 1.0;
 constexpr double kLowSpeedYawSigma_rad = 0.2;  // A heading frozen at standstill is only roughly so.
 
@@ -201,6 +203,11 @@ Eigen::Matrix2d PriorityFilter::LackOf(const Eigen::Matrix2d& least) const {
   const Eigen::Vector2d positive = parts.eigenvalues().cwiseMax(0.0);
   if (!positive.allFinite()) return Eigen::Matrix2d::Zero();
   return parts.eigenvectors() * positive.asDiagonal() * parts.eigenvectors().transpose();
+}
+
+void PriorityFilter::DoubtVelocity() {
+  covariance_(kSpeed, kSpeed) += kDoubtSpeed_mps * kDoubtSpeed_mps;
+  covariance_(kYaw, kYaw) += kDoubtYaw_rad * kDoubtYaw_rad;
 }
 
 void PriorityFilter::ResetVehicle(const KinematicState& vehicle) {

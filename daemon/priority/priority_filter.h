@@ -96,6 +96,8 @@ class PriorityFilter {
     covariance_.topLeftCorner<2, 2>() += LackOf(least);
   }
 
+  /// Forgets some of what is known of speed and direction, so that claims can tell them anew.
+  void DoubtVelocity();
   /// Takes the vehicle's state from LOCAL again and keeps what is known of the sender; for when the
   /// two have come apart although the sensors see the vehicle.
   void ResetVehicle(const KinematicState& vehicle);

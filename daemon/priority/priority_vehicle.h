@@ -42,6 +42,7 @@ struct PriorityVehicle {
 
   Timestamp last_v2v{};
   int misfits_in_a_row = 0;  ///< Claims that did not fit the filter.
+  int velocity_doubts = 0;   ///< In this bridge; see PriorityFilter::DoubtVelocity().
   EmptyPlace empty{};
 
   Extent extent{};

@@ -7,6 +7,8 @@
 namespace v2vouch {
 namespace {
 
+// Of a false velocity, by which the residual of the position must move with it.
+constexpr double kConfirmedShare = 0.5;
 // Share of the ego's own pose error that may come and go within ten seconds.
 constexpr double kAlignmentDrift = 0.3;
 // A good receiver's heading may be this far off for long (SAE J2945/1 asks for 2 degrees).
@@ -19,7 +21,8 @@ double Excess(const Eigen::Vector2d& residual_O, const CoObservation& now, doubl
   const double s = std::sin(now.track_yaw_rad);
   const double along_m = c * residual_O.x() + s * residual_O.y();
   const double across_m = -s * residual_O.x() + c * residual_O.y();
-  const double across_limit_m = limit_m + alignment_share * now.alignment_sigma_m;
+  const double across_limit_m =
+      limit_m + alignment_share * now.alignment_sigma_m + 2.0 * now.sensed_sigma_m;
   const double along_limit_m =
       across_limit_m + config.stale_position_s * std::abs(now.track_speed_mps);
   return std::hypot(along_m / along_limit_m, across_m / across_limit_m);
@@ -46,8 +49,15 @@ void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& c
   const double w = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / span_s) : 1.0;
   if (dt_s <= 1.0) time_s_ += dt_s;
   mean_ += w * (observation.residual_O - mean_);
+  const double fast_span_s = std::max(std::min(time_s_, kFastShare * config.mean_time_s), 1e-3);
+  const double w_fast = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / fast_span_s) : 1.0;
+  fast_mean_ += w_fast * (observation.residual_O - fast_mean_);
   speed_ += w * (observation.speed_residual_mps - speed_);
   speed_sigma_ += w * (observation.speed_sigma_mps - speed_sigma_);
+  const double long_span_s = std::max(std::min(time_s_, 3.0 * config.mean_time_s), 1e-3);
+  const double w_long = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / long_span_s) : 1.0;
+  accel_ += w_long * (observation.accel_residual_mps2 - accel_);
+  accel_sigma_ += w_long * (observation.accel_sigma_mps2 - accel_sigma_);
   if (observation.yaw_residual_rad) {
     const double w_yaw = has_yaw_ ? w : 1.0;
     yaw_ += w_yaw * (*observation.yaw_residual_rad - yaw_);
@@ -76,14 +86,16 @@ std::optional<Eigen::Vector2d> ResidualHistory::reference_O() const {
 std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config) {
   if (!history.is_settled()) return std::nullopt;
-  return JudgeResidual("residual_level", history.mean_O(), now, config.level_withdraw_m,
-                       config.level_accuse_m, 1.0, config);
+  const Eigen::Vector2d own_O =
+      now.is_ego_shifted ? (history.mean_O() - now.shift_O).eval() : history.mean_O();
+  return JudgeResidual("residual_level", own_O, now, config.level_withdraw_m, config.level_accuse_m,
+                       1.0, config);
 }
 
 std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config) {
   const auto reference_O = history.reference_O();
-  if (!reference_O) return std::nullopt;
+  if (!reference_O || now.is_ego_shifted) return std::nullopt;
   return JudgeResidual("residual_drift", history.mean_O() - *reference_O, now,
                        config.drift_withdraw_m, config.drift_accuse_m, kAlignmentDrift, config);
 }
@@ -102,6 +114,17 @@ std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObs
                       across_mps / (limit_mps + across_slack_mps)) > 1.0;
   };
   const double residual_mps = std::hypot(along_mps, across_mps);
+  const Eigen::Vector2d rate_O = history.rate_O(config);
+  const double c = std::cos(now.track_yaw_rad);
+  const double s = std::sin(now.track_yaw_rad);
+  const double moved_mps = ((c * rate_O.x() + s * rate_O.y()) * along_mps +
+                            (-s * rate_O.x() + c * rate_O.y()) * across_mps) /
+                           std::max(residual_mps, 1e-6);
+  const auto reference_O = history.reference_O();
+  if (!reference_O || (history.fast_mean_O() - *reference_O).norm() < config.leaving_m ||
+      moved_mps < kConfirmedShare * residual_mps) {
+    return std::nullopt;
+  }
   if (exceeds(config.speed_accuse_mps)) {
     return Finding{"velocity_residual", Verdict::kAccuse, "velocity_residual_mps", residual_mps,
                    config.speed_accuse_mps};
@@ -126,10 +149,23 @@ std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObs
   return std::nullopt;
 }
 
-std::optional<Finding> CheckJump(double distance_m, double dt_s, const TrustConfig& config) {
-  const double limit_m = std::max(config.jump_m, config.jump_speed_mps * std::max(0.0, dt_s));
-  if (distance_m <= limit_m) return std::nullopt;
-  return Finding{"position_jump", Verdict::kWithdraw, "displacement_m", distance_m, limit_m};
+std::optional<Finding> CheckAcceleration(const ResidualHistory& history, const CoObservation&,
+                                         const TrustConfig& config) {
+  if (history.time_s() < 3.0 * config.mean_time_s) return std::nullopt;
+  const double limit_mps2 = config.accel_withdraw_mps2 + 2.0 * history.accel_sigma_mps2();
+  if (std::abs(history.accel_mps2()) <= limit_mps2) return std::nullopt;
+  return Finding{"acceleration_residual", Verdict::kWithdraw, "acceleration_residual_mps2",
+                 history.accel_mps2(), limit_mps2};
+}
+
+bool IsSizePlausible(const std::optional<double>& length_m, const std::optional<double>& width_m,
+                     const Extent& sensed, const TrustConfig& config) {
+  const auto fits = [&](const std::optional<double>& claimed_m, double sensed_m, double sigma_m) {
+    return !claimed_m ||
+           std::abs(*claimed_m - sensed_m) <= config.size_mismatch * sensed_m + 2.0 * sigma_m;
+  };
+  return fits(length_m, sensed.length_m, sensed.length_sigma_m) &&
+         fits(width_m, sensed.width_m, sensed.width_sigma_m);
 }
 
 }  // namespace v2vouch

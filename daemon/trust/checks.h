@@ -9,6 +9,7 @@
 
 #include "daemon/base/time.h"
 #include "daemon/data/finding.h"
+#include "daemon/data/track.h"
 #include "daemon/trust/trust_config.h"
 
 namespace v2vouch {
@@ -25,6 +26,11 @@ struct CoObservation {
   double speed_sigma_mps = 0.1;  ///< Of the sensed speed.
   std::optional<double> yaw_residual_rad;
   double yaw_sigma_rad = 0.02;  ///< Of the sensed direction.
+  double accel_residual_mps2 = 0.0;
+  double accel_sigma_mps2 = 0.5;  ///< Of the sensed acceleration.
+  double sensed_sigma_m = 0.0;    ///< Of the sensed position, by which the sensors may be wrong.
+  bool is_ego_shifted = false;    ///< Common mode: `shift_O` is our own fault, its history unknown.
+  Eigen::Vector2d shift_O = Eigen::Vector2d::Zero();
 };
 
 /// Running means of raw residuals and their history by the second. Copyable, fixed size.
@@ -34,22 +40,34 @@ class ResidualHistory {
 
   [[nodiscard]] bool is_settled() const { return time_s_ >= 1.0; }  ///< One mean time has passed.
   [[nodiscard]] const Eigen::Vector2d& mean_O() const { return mean_; }
+  /// How fast the residual moves: difference of a fast and a slow mean over that of their times.
+  [[nodiscard]] Eigen::Vector2d rate_O(const TrustConfig& config) const {
+    return (fast_mean_ - mean_) / ((1.0 - kFastShare) * config.mean_time_s);
+  }
+  [[nodiscard]] const Eigen::Vector2d& fast_mean_O() const { return fast_mean_; }
   [[nodiscard]] double speed_mps() const { return speed_; }
   [[nodiscard]] double speed_sigma_mps() const { return speed_sigma_; }
   [[nodiscard]] double yaw_rad() const { return yaw_; }
   [[nodiscard]] double yaw_sigma_rad() const { return yaw_sigma_; }
   [[nodiscard]] bool has_yaw() const { return has_yaw_; }
+  [[nodiscard]] double accel_mps2() const { return accel_; }  ///< Mean of three mean times.
+  [[nodiscard]] double accel_sigma_mps2() const { return accel_sigma_; }
+  [[nodiscard]] double time_s() const { return time_s_; }
+  [[nodiscard]] Timestamp last() const { return last_; }
   /// Two-second mean 10 s ago, or the first two seconds where there are not yet 10.
   [[nodiscard]] std::optional<Eigen::Vector2d> reference_O() const;
 
  private:
   static constexpr std::size_t kBlocks = 12;
+  static constexpr double kFastShare = 0.3;  // Of mean_time_s.
   bool has_any_ = false;
   bool has_yaw_ = false;
   Timestamp last_{};
   double time_s_ = 0.0;  // Under observation, gaps over 1 s not counted.
   Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d fast_mean_ = Eigen::Vector2d::Zero();
   double speed_ = 0.0, speed_sigma_ = 0.0, yaw_ = 0.0, yaw_sigma_ = 0.0;
+  double accel_ = 0.0, accel_sigma_ = 0.0;
   std::array<Eigen::Vector2d, kBlocks> blocks_{};  // Means by second, ring.
   std::uint64_t block_count_ = 0;
   Timestamp block_start_{};
@@ -65,11 +83,19 @@ std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObserv
                                   const TrustConfig& config);
 /// C10: claimed against sensed velocity (along and across the vehicle's direction) and direction;
 /// limits grow by twice the sensors' own sigma, across also by an honest heading error of 2
-/// degrees.
+/// degrees. A false velocity beside true places is the message stream's to find; what counts here
+/// is a sender that leaves its vehicle, so the residual of the position must move with that of the
+/// velocity, by half of it at least, and have come leaving_m from its reference. Where it does not,
+/// the sensors have the velocity wrong.
 std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObservation& now,
                                      const TrustConfig& config);
-/// C5: a sender's displacement between two messages against its own claimed motion.
-/// @param distance_m from where its last message would have it now.
-std::optional<Finding> CheckJump(double distance_m, double dt_s, const TrustConfig& config);
+/// C15: claimed against sensed acceleration over three mean times. Sensors follow hard braking
+/// late, so a shorter disagreement says nothing.
+std::optional<Finding> CheckAcceleration(const ResidualHistory& history, const CoObservation& now,
+                                         const TrustConfig& config);
+/// C13: whether claimed and sensed size can be of one vehicle. Twice the sensors' own sigma is
+/// allowed beside the mismatch; a size that is not claimed fits.
+bool IsSizePlausible(const std::optional<double>& length_m, const std::optional<double>& width_m,
+                     const Extent& sensed, const TrustConfig& config);
 
 }  // namespace v2vouch

@@ -9,6 +9,7 @@ namespace v2vouch {
 namespace {
 
 constexpr int kMaxDoublings = 16;
+constexpr double kMostCredit_s = 0.5;  // For one message, however long the silence before it.
 
 double Doubled(double base_s, int times, double most_s) {
   return std::min(most_s, base_s * std::exp2(std::max(times - 1, 0)));
@@ -25,7 +26,7 @@ void SenderTrust::OnMessage(Timestamp stamp, bool is_consistent, const TrustConf
       break;
     case TrustState::kSuspect: {
       const double clean_s = Doubled(config.clean_s, suspicions_, config.max_clean_s);
-      if (in_state_s >= config.suspect_s && ToSeconds(stamp - last_finding_) >= clean_s) {
+      if (in_state_s >= config.suspect_s && clean_s_ >= clean_s) {
         state_ = TrustState::kCandidate;
         history_ = {};
       }
@@ -45,14 +46,25 @@ void SenderTrust::OnMessage(Timestamp stamp, bool is_consistent, const TrustConf
 
 void SenderTrust::OnCoObservation(const CoObservation& observation, bool may_accuse,
                                   const TrustConfig& config) {
+  const double dt_s = ToSeconds(observation.stamp - history_.last());
   history_.Add(observation, config);
   std::optional<Finding> gravest;
-  for (const auto check : {CheckLevel, CheckDrift, CheckVelocity}) {
+  for (const auto check : {CheckLevel, CheckDrift, CheckVelocity, CheckAcceleration}) {
     const auto finding = check(history_, observation, config);
     if (finding && (!gravest || finding->severity > gravest->severity)) gravest = finding;
   }
   if (!gravest || gravest->severity != Verdict::kAccuse || !may_accuse) accusable_since_.reset();
-  if (!gravest) return;
+  if (!gravest) {
+    clean_s_ += std::clamp(dt_s, 0.0, kMostCredit_s);
+    return;
+  }
+  clean_s_ = 0.0;
+  // What does not fit a stranger's track may be the track: another's, or none.
+  if (!is_relied_on() && !has_penalty()) {
+    state_ = TrustState::kUnknown;
+    consistent_run_ = 0;
+    return;
+  }
   if (gravest->severity == Verdict::kAccuse && may_accuse) {
     if (!accusable_since_) accusable_since_ = observation.stamp;
     if (ToSeconds(observation.stamp - *accusable_since_) >= config.accuse_hold_s) {
@@ -72,7 +84,7 @@ bool SenderTrust::TryValidate(const ValidationEvidence& evidence, const TrustCon
   if (consistent_run_ < config.candidate_messages || evidence.is_accuracy_poor) return false;
   if (evidence.co_observations < config.co_observations) return false;
   if (evidence.span_s < config.co_observed_s) return false;
-  if (!evidence.is_level_plausible) return false;
+  if (!evidence.is_level_plausible || !evidence.is_size_plausible) return false;
   if (!evidence.is_nis_consistent || evidence.margin < evidence.min_margin) return false;
   if (!evidence.is_assigned || !evidence.are_sensors_sure) return false;
   state_ = TrustState::kValidated;
@@ -93,20 +105,31 @@ void SenderTrust::Release() {
   history_ = {};
 }
 
+Penalty SenderTrust::penalty() const {
+  if (!has_penalty()) return {};
+  return {state_, suspicions_, accusations_, state_since_, last_finding_};
+}
+
+void SenderTrust::Inherit(const Penalty& penalty) {
+  if (penalty.state == TrustState::kNone) return;
+  state_ = penalty.state;
+  suspicions_ = std::max(suspicions_, penalty.suspicions);
+  accusations_ = std::max(accusations_, penalty.accusations);
+  state_since_ = penalty.since;
+  last_finding_ = penalty.last_finding;
+  clean_s_ = 0.0;
+  consistent_run_ = 0;
+  history_ = {};
+}
+
 std::optional<SenderTrust::Judgement> SenderTrust::TakeVerdict() {
   return std::exchange(pending_, std::nullopt);
 }
 
 void SenderTrust::Suspect(Timestamp stamp, const Finding& finding) {
   last_finding_ = stamp;
-  if (state_ == TrustState::kSuspect || state_ == TrustState::kRevoked) return;
-  // Only a sender we relied on has something to be withdrawn from; a stranger that does not fit is
-  // simply not validated. Its finding still starts it again from zero.
-  if (!is_relied_on()) {
-    state_ = TrustState::kUnknown;
-    consistent_run_ = 0;
-    return;
-  }
+  clean_s_ = 0.0;
+  if (has_penalty()) return;
   state_ = TrustState::kSuspect;
   state_since_ = stamp;
   consistent_run_ = 0;
@@ -116,6 +139,7 @@ void SenderTrust::Suspect(Timestamp stamp, const Finding& finding) {
 
 void SenderTrust::Revoke(Timestamp stamp, const Finding& finding) {
   last_finding_ = stamp;
+  clean_s_ = 0.0;
   if (state_ == TrustState::kRevoked) return;
   state_ = TrustState::kRevoked;
   state_since_ = stamp;

@@ -10,13 +10,23 @@
 
 namespace v2vouch {
 
+/// What is left of a penalty, for whoever goes on in a penalised sender's place.
+struct Penalty {
+  TrustState state = TrustState::kNone;  ///< SUSPECT or REVOKED; kNone: no penalty.
+  int suspicions = 0;
+  int accusations = 0;
+  Timestamp since{};
+  Timestamp last_finding{};
+};
+
 /// What the sensors and the association say for a sender at this moment.
 struct ValidationEvidence {
   int co_observations = 0;
   double span_s = 0.0;
   bool is_nis_consistent = false;
   bool is_level_plausible = true;  ///< Its constant offset may be its bias.
-  double margin = 0.0;             ///< Log-likelihood over the second best.
+  bool is_size_plausible = true;
+  double margin = 0.0;  ///< Log-likelihood over the second best.
   double min_margin = 4.0;
   bool is_assigned = false;          ///< Chosen one-to-one.
   bool are_sensors_sure = false;     ///< Radar and camera, or one of them long enough.
@@ -27,8 +37,12 @@ struct ValidationEvidence {
 /// Trust in one sender. Pure: evidence in, state and verdicts out.
 ///
 ///     UNKNOWN -> CANDIDATE -> VALIDATED <-> BRIDGED -> CANDIDATE (bridge ended, no blame)
-///     any -> SUSPECT (withdrawn) -> clean for clean_s, doubling -> CANDIDATE
+///     any -> SUSPECT (withdrawn) -> agreeing with the sensors for clean_s, doubling -> CANDIDATE
 ///     any -> REVOKED (accused, from hard evidence that lasts) -> revoked_s, doubling -> UNKNOWN
+///
+/// Silence and hiding clean nobody: only time in which the sensors see a vehicle where the sender
+/// says it is counts. A stranger whose claims do not fit the LOCAL track it is taken for is not
+/// suspected for that (the track may be another's), it just starts from zero.
 ///
 /// Copyable, fixed size.
 class SenderTrust {
@@ -51,7 +65,8 @@ class SenderTrust {
   void OnCoObservation(const CoObservation& observation, bool may_accuse,
                        const TrustConfig& config);
 
-  /// Any other finding (negative evidence, leaving the reachable set, a jump, ...).
+  /// Any other finding (negative evidence, leaving the reachable set, the message stream, ...).
+  /// A hard one accuses only where `may_accuse`, else it withdraws.
   void OnFinding(Timestamp stamp, const Finding& finding, bool may_accuse);
 
   /// CANDIDATE -> VALIDATED where all of the evidence is there. @return whether it happened.
@@ -62,6 +77,8 @@ class SenderTrust {
   void Release();            ///< Bridge or contact ended without blame -> CANDIDATE.
   /// Takes over state, history and penalties of the identity this one continues.
   void InheritFrom(const SenderTrust& old) { *this = old; }
+  [[nodiscard]] Penalty penalty() const;
+  void Inherit(const Penalty& penalty);
 
   /// Residuals have lost their common ground (the ego moved its own place): start them again.
   void ForgetResiduals() {
@@ -84,6 +101,7 @@ class SenderTrust {
   int consistent_run_ = 0;
   int suspicions_ = 0;
   int accusations_ = 0;
+  double clean_s_ = 0.0;  // Agreeing with the sensors since the last finding.
   Timestamp state_since_{};
   Timestamp last_finding_{};
   std::optional<Timestamp> accusable_since_;

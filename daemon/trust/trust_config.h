@@ -3,6 +3,9 @@
 
 #include "daemon/base/angle.h"
 #include "daemon/base/visit.h"
+#include "daemon/trust/claimed_place.h"
+#include "daemon/trust/common_mode.h"
+#include "daemon/trust/tombstone_config.h"
 
 namespace v2vouch {
 
@@ -14,23 +17,29 @@ struct TrustConfig {
   double co_observed_s = 1.5;     ///< ... and over this long.
   double mean_time_s = 1.0;       ///< Residuals are averaged over this time.
   double level_withdraw_m = 5.0;  ///< C8: level of the raw residual.
-  double level_accuse_m = 7.0;
+  double level_accuse_m = 12.0;
   double drift_withdraw_m = 3.0;  ///< C9: its change over 10 s, or since validation.
-  double drift_accuse_m = 4.0;
+  double drift_accuse_m = 10.0;
   double stale_position_s = 0.15;   ///< C8, C9: along-track limits grow by this times speed.
   double speed_withdraw_mps = 1.0;  ///< C10: claimed against sensed velocity.
   double speed_accuse_mps = 2.0;
+  double leaving_m = 1.5;  ///< C10: only once the position has come so far from where it was.
   double heading_withdraw_rad = FromDegrees(15.0);  ///< C10, above heading_min_speed_mps.
   double heading_accuse_rad = FromDegrees(30.0);
   double heading_min_speed_mps = 3.0;
-  double jump_m = 10.0;          ///< C5: displacement against the sender's own motion ...
-  double jump_speed_mps = 70.0;  ///< ... or this speed, whichever allows more.
-  double accuse_hold_s = 5.0;    ///< An accusing level must last this long.
-  double suspect_s = 2.0;        ///< Least stay in SUSPECT.
-  double clean_s = 5.0;          ///< Without a finding before CANDIDATE; doubles each time.
+  double accel_withdraw_mps2 = 3.0;  ///< C15: claimed against sensed acceleration, mean of 3 s.
+  double size_mismatch = 0.6;        ///< C13: claimed size off by this share of the sensed one.
+  double odd_claim_m = 6.0;  ///< A claim so far from its sender's others may be somebody else's ...
+  int odd_claims = 5;        ///< ... but not so many in a row.
+  double accuse_hold_s = 5.0;  ///< An accusing level must last this long.
+  double suspect_s = 2.0;      ///< Least stay in SUSPECT.
+  double clean_s = 5.0;        ///< Agreeing with the sensors before CANDIDATE; doubles each time.
   double max_clean_s = 60.0;
   double revoked_s = 60.0;  ///< Doubles each time.
   double max_revoked_s = 600.0;
+  ClaimedPlaceConfig place;
+  CommonModeConfig common_mode;
+  TombstoneConfig tombstone;
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -45,17 +54,23 @@ struct TrustConfig {
     a.Field("stale_position_s", stale_position_s, {.at_least = 0.0, .at_most = 1.0});
     a.Field("speed_withdraw_mps", speed_withdraw_mps, {.above = 0.0, .at_most = 20.0});
     a.Field("speed_accuse_mps", speed_accuse_mps, {.above = 0.0, .at_most = 20.0});
+    a.Field("leaving_m", leaving_m, {.at_least = 0.0, .at_most = 20.0});
     a.Degrees("heading_withdraw_deg", heading_withdraw_rad, {.above = 0.0, .at_most = 180.0});
     a.Degrees("heading_accuse_deg", heading_accuse_rad, {.above = 0.0, .at_most = 180.0});
     a.Field("heading_min_speed_mps", heading_min_speed_mps, {.at_least = 0.5, .at_most = 20.0});
-    a.Field("jump_m", jump_m, {.above = 0.0, .at_most = 100.0});
-    a.Field("jump_speed_mps", jump_speed_mps, {.above = 0.0, .at_most = 200.0});
+    a.Field("accel_withdraw_mps2", accel_withdraw_mps2, {.above = 0.0, .at_most = 50.0});
+    a.Field("size_mismatch", size_mismatch, {.above = 0.0, .at_most = 10.0});
+    a.Field("odd_claim_m", odd_claim_m, {.above = 0.0, .at_most = 100.0});
+    a.Field("odd_claims", odd_claims, {.at_least = 1, .at_most = 100});
     a.Field("accuse_hold_s", accuse_hold_s, {.at_least = 0.0, .at_most = 60.0});
     a.Field("suspect_s", suspect_s, {.at_least = 0.0, .at_most = 60.0});
     a.Field("clean_s", clean_s, {.at_least = 0.0, .at_most = 600.0});
     a.Field("max_clean_s", max_clean_s, {.at_least = 0.0, .at_most = 3600.0});
     a.Field("revoked_s", revoked_s, {.at_least = 0.0, .at_most = 3600.0});
     a.Field("max_revoked_s", max_revoked_s, {.at_least = 0.0, .at_most = 36000.0});
+    a.Field("place", place);
+    a.Field("common_mode", common_mode);
+    a.Field("tombstone", tombstone);
   }
 };
 

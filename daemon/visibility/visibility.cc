@@ -201,6 +201,15 @@ SensorView VisibilityMap::FromCamera(int index, const Occluder& footprint) const
   return See(CameraAt(index), Box(footprint));
 }
 
+bool VisibilityMap::HasStandingReturn(const Eigen::Vector2d& p_O, double within_m) const {
+  bool is_there = false;
+  raster_.ForEachActive(ego_.stamp, {ego_.X_OB.x_m(), ego_.X_OB.y_m()},
+                        [&](const Eigen::Vector2d& cell_O, bool /*is_structure*/) {
+                          is_there = is_there || (cell_O - p_O).squaredNorm() < within_m * within_m;
+                        });
+  return is_there;
+}
+
 View VisibilityMap::Overall(const Occluder& footprint) const {
   return Ask(nullptr, Box(footprint)).overall;
 }

@@ -86,6 +86,10 @@ class VisibilityMap {
   [[nodiscard]] SensorView FromRadar(int index, const Occluder& footprint) const;
   [[nodiscard]] SensorView FromCamera(int index, const Occluder& footprint) const;
 
+  /// Whether a radar has met something standing within `within_m` of a place lately. What lies in
+  /// the box of a track is not counted.
+  [[nodiscard]] bool HasStandingReturn(const Eigen::Vector2d& p_O, double within_m) const;
+
   /// Best answer over all sensors: clear if any sees it clear, else unknown if any is unknown, else
   /// occluded if any has it in its field of view, else out of view.
   [[nodiscard]] View Overall(const Occluder& footprint) const;

@@ -58,6 +58,18 @@ CoObservation Residual(double x_m, double y_m) {
   return observation;
 }
 
+// Agrees with the sensors at 10 Hz; @return for how long until no longer SUSPECT, or NaN.
+double AgreeUntilClean(SenderTrust& trust, double from_s) {
+  for (int i = 0; i < 1200; ++i) {
+    CoObservation observation = Residual(0.0, 0.0);
+    observation.stamp = At(from_s + 0.1 * i);
+    trust.OnMessage(observation.stamp, true, kConfig);
+    if (trust.state() != TrustState::kSuspect) return 0.1 * i;
+    trust.OnCoObservation(observation, true, kConfig);
+  }
+  return std::nan("");
+}
+
 TEST(SenderTrust, ThreeConsistentMessagesMakeACandidate) {
   SenderTrust trust;
   trust.OnMessage(At(0.0), true, kConfig);
@@ -109,23 +121,47 @@ TEST(SenderTrust, SuspectMustBeCleanAndTwiceAsLongTheSecondTime) {
   EXPECT_EQ(trust.state(), TrustState::kSuspect);
   EXPECT_TRUE(trust.TakeVerdict().has_value());
   EXPECT_FALSE(trust.TakeVerdict().has_value());
-  trust.OnMessage(At(14.9), true, kConfig);
+  // Silence cleans nobody, however long it lasts.
+  trust.OnMessage(At(60.0), true, kConfig);
   EXPECT_EQ(trust.state(), TrustState::kSuspect);
-  trust.OnMessage(At(15.0), true, kConfig);
-  EXPECT_EQ(trust.state(), TrustState::kCandidate);
+  EXPECT_NEAR(AgreeUntilClean(trust, 60.0), kConfig.clean_s, 0.6);
 
-  for (int i = 0; i < 3; ++i) trust.OnMessage(At(15.1 + 0.1 * i), true, kConfig);
+  for (int i = 0; i < 3; ++i) trust.OnMessage(At(80.0 + 0.1 * i), true, kConfig);
   ASSERT_TRUE(trust.TryValidate(Good(), kConfig));
-  trust.OnFinding(At(20.0), finding, true);
-  trust.OnMessage(At(29.9), true, kConfig);
+  trust.OnFinding(At(81.0), finding, true);
   EXPECT_EQ(trust.state(), TrustState::kSuspect);
-  trust.OnMessage(At(30.0), true, kConfig);
-  EXPECT_EQ(trust.state(), TrustState::kCandidate);
+  EXPECT_NEAR(AgreeUntilClean(trust, 81.0), 2.0 * kConfig.clean_s, 0.6);
+}
+
+TEST(SenderTrust, StrangersAreSuspectedForWhatIsTheirOwnAndNotForTheTrackTheyAreTakenFor) {
+  SenderTrust stranger = Candidate();
+  for (int i = 0; i < 30; ++i) {
+    CoObservation far = Residual(0.0, 9.0);
+    far.stamp = At(1.0 + 0.1 * i);
+    stranger.OnCoObservation(far, true, kConfig);
+  }
+  EXPECT_EQ(stranger.state(), TrustState::kUnknown);
+  EXPECT_FALSE(stranger.TakeVerdict().has_value());
+  stranger.OnFinding(At(5.0), {"empty_place", Verdict::kWithdraw, "log_ratio", -5.0, -4.6}, true);
+  EXPECT_EQ(stranger.state(), TrustState::kSuspect);
+  EXPECT_TRUE(stranger.TakeVerdict().has_value());
+}
+
+TEST(SenderTrust, PenaltyIsInheritedWithItsDoubling) {
+  SenderTrust liar = Validated();
+  liar.OnFinding(At(10.0), {"test", Verdict::kWithdraw, "x", 1.0, 0.0}, true);
+  SenderTrust heir = Candidate();
+  heir.Inherit(liar.penalty());
+  EXPECT_EQ(heir.state(), TrustState::kSuspect);
+  EXPECT_NEAR(AgreeUntilClean(heir, 10.0), kConfig.clean_s, 0.6);
+  SenderTrust other = Candidate();
+  other.Inherit(Validated().penalty());
+  EXPECT_EQ(other.state(), TrustState::kCandidate) << "no penalty, nothing to inherit";
 }
 
 TEST(SenderTrust, AccusationNeedsEvidenceThatLastsAndIsForbiddenWhileEgoIsInDoubt) {
   SenderTrust trust = Validated();
-  const auto lie = [](double) { return Residual(0.0, 9.0); };
+  const auto lie = [](double) { return Residual(0.0, 14.0); };
   const double t = RunUntilVerdict(trust, 0.0, 20.0, lie, Verdict::kAccuse);
   EXPECT_GE(t, kConfig.accuse_hold_s);
   EXPECT_LT(t, kConfig.accuse_hold_s + 2.0);
@@ -137,7 +173,7 @@ TEST(SenderTrust, AccusationNeedsEvidenceThatLastsAndIsForbiddenWhileEgoIsInDoub
 
   SenderTrust doubtful = Validated();
   for (int i = 0; i < 200; ++i) {
-    CoObservation observation = Residual(0.0, 9.0);
+    CoObservation observation = Residual(0.0, 14.0);
     observation.stamp = At(0.1 * i);
     doubtful.OnCoObservation(observation, false, kConfig);
   }
@@ -155,19 +191,71 @@ TEST(SenderTrust, SlowDriftIsWithdrawn) {
   EXPECT_GT(t, 5.0);
 }
 
-TEST(SenderTrust, FalseSpeedIsWithdrawnUnlessTheSensorsAreUnsureThemselves) {
-  const auto fast = [](double sigma) {
-    return [sigma](double) {
-      CoObservation observation = Residual(0.0, 0.0);
+// A sender that walks away from its vehicle at 2 m/s, as its claimed speed says too.
+TEST(SenderTrust, LeavingIsWithdrawnUnlessTheSensorsAreUnsureThemselves) {
+  const auto leaving = [](double sigma) {
+    return [sigma](double t) {
+      CoObservation observation = Residual(2.0 * t, 0.0);
       observation.speed_residual_mps = 2.0;
       observation.speed_sigma_mps = sigma;
       return observation;
     };
   };
+  const auto staying = [](double) { return Residual(0.0, 0.0); };
   SenderTrust sure = Validated();
-  EXPECT_LT(RunUntilVerdict(sure, 0.0, 5.0, fast(0.1), Verdict::kWithdraw), 1.5);
+  RunUntilVerdict(sure, 0.0, 3.0, staying, Verdict::kWithdraw);
+  EXPECT_LT(RunUntilVerdict(sure, 3.0, 5.0, leaving(0.1), Verdict::kWithdraw), 2.0);
   SenderTrust unsure = Validated();
-  EXPECT_TRUE(std::isnan(RunUntilVerdict(unsure, 0.0, 5.0, fast(1.0), Verdict::kWithdraw)));
+  RunUntilVerdict(unsure, 0.0, 3.0, staying, Verdict::kWithdraw);
+  EXPECT_GT(RunUntilVerdict(unsure, 3.0, 5.0, leaving(1.0), Verdict::kWithdraw), 2.0)
+      << "found by its drift at last";
+}
+
+// Sensors that have a velocity wrong, while claimed and sensed places stay together.
+TEST(SenderTrust, AFalseSensedVelocityBlamesNobody) {
+  SenderTrust trust = Validated();
+  EXPECT_TRUE(std::isnan(RunUntilVerdict(
+      trust, 0.0, 10.0,
+      [](double) {
+        CoObservation observation = Residual(0.3, 0.2);
+        observation.speed_residual_mps = 5.0;
+        observation.speed_sigma_mps = 0.2;
+        return observation;
+      },
+      Verdict::kWithdraw)));
+}
+
+TEST(SenderTrust, AShiftThatAllShareIsNotTheSendersFault) {
+  const auto shifted = [](double) {
+    CoObservation observation = Residual(6.0, 0.0);
+    observation.is_ego_shifted = true;
+    observation.shift_O = {5.0, 0.5};
+    return observation;
+  };
+  SenderTrust honest = Validated();
+  EXPECT_TRUE(std::isnan(RunUntilVerdict(honest, 0.0, 10.0, shifted, Verdict::kWithdraw)));
+  const auto liar = [](double) {
+    CoObservation observation = Residual(0.0, -4.0);
+    observation.is_ego_shifted = true;
+    observation.shift_O = {5.0, 0.5};
+    return observation;
+  };
+  SenderTrust caught = Validated();
+  EXPECT_LT(RunUntilVerdict(caught, 0.0, 10.0, liar, Verdict::kWithdraw), 3.0);
+}
+
+TEST(SenderTrust, FeignedBrakingIsWithdrawnAfterThreeSeconds) {
+  SenderTrust trust = Validated();
+  const double t = RunUntilVerdict(
+      trust, 0.0, 10.0,
+      [](double) {
+        CoObservation observation = Residual(0.0, 0.0);
+        observation.accel_residual_mps2 = -6.0;
+        return observation;
+      },
+      Verdict::kWithdraw);
+  EXPECT_GE(t, 3.0);
+  EXPECT_LT(t, 5.0);
 }
 
 // 0.1 h of an honest receiver: bias of 1.5 m per axis that wanders with 100 s, 1 m of noise. A
@@ -197,10 +285,15 @@ TEST(SenderTrust, HonestGnssErrorIsNeverAccusedAndRarelyWithdrawn) {
   RecordProperty("withdrawn_per_hour", withdrawn);
 }
 
-TEST(Checks, JumpIsJudgedAgainstDistanceAndTime) {
-  EXPECT_FALSE(CheckJump(9.9, 0.1, kConfig).has_value());
-  EXPECT_TRUE(CheckJump(10.1, 0.1, kConfig).has_value());
-  EXPECT_FALSE(CheckJump(60.0, 1.0, kConfig).has_value());
+TEST(Checks, ASizeThatCannotBeTheSensedVehiclesIsNotPlausible) {
+  const Extent car{.length_m = 4.5, .width_m = 1.8, .length_sigma_m = 0.3, .width_sigma_m = 0.1};
+  EXPECT_TRUE(IsSizePlausible(4.2, 1.9, car, kConfig));
+  EXPECT_TRUE(IsSizePlausible(std::nullopt, std::nullopt, car, kConfig));
+  EXPECT_FALSE(IsSizePlausible(13.5, 1.8, car, kConfig));
+  EXPECT_FALSE(IsSizePlausible(4.5, 4.5, car, kConfig));
+  const Extent unknown{
+      .length_m = 4.5, .width_m = 1.8, .length_sigma_m = 3.0, .width_sigma_m = 0.3};
+  EXPECT_TRUE(IsSizePlausible(12.0, 2.5, unknown, kConfig)) << "the sensors do not know better";
 }
 
 }  // namespace

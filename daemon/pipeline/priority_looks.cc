@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an own-sensor frame says of senders that no sensor vouches for, and of all senders together.
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/pipeline/local_perception.h"
+#include "daemon/pipeline/priority_evidence.h"
+#include "daemon/pipeline/priority_perception.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr double kMaxClaimAge_s = 0.4;  // An older claim says too little of where to look now.
+constexpr double kHit_s = 0.35;         // A track hit so lately is there.
+constexpr double kStanding_mps = 2.0;   // Standing returns may be a vehicle slower than this.
+constexpr double kStandingReach_m = 3.0;
+constexpr double kStale_s = 0.075;  // Positions older than they say; as in the association.
+constexpr double kPlaceSigma_m = 0.3;
+constexpr double kTaken = 0.9;  // How surely a place is not free that another vehicle stands on.
+constexpr double kResidual_s = 1.0;
+
+bool WasHit(const LocalTrack& track, Timestamp now) {
+  const Timestamp last =
+      std::max(track.last_radar.value_or(Timestamp{}), track.last_camera.value_or(Timestamp{}));
+  return ToSeconds(now - last) <= kHit_s;
+}
+
+// Whether the two footprints come within `slack_m` of each other, along and across the track.
+bool AreClose(const Occluder& claimed, const LocalTrack& track, double slack_m) {
+  const double yaw = track.state_O.mean[kYaw];
+  const Eigen::Vector2d d = claimed.centre_O - track.state_O.mean.head<2>();
+  const double along = std::cos(yaw) * d.x() + std::sin(yaw) * d.y();
+  const double across = -std::sin(yaw) * d.x() + std::cos(yaw) * d.y();
+  const double c = std::abs(std::cos(claimed.yaw_rad - yaw));
+  const double s = std::abs(std::sin(claimed.yaw_rad - yaw));
+  const double half_along =
+      0.5 * (track.extent.length_m + c * claimed.length_m + s * claimed.width_m);
+  const double half_across =
+      0.5 * (track.extent.width_m + s * claimed.length_m + c * claimed.width_m);
+  return std::abs(along) <= half_along + slack_m && std::abs(across) <= half_across + slack_m;
+}
+
+}  // namespace
+
+bool PriorityPerception::IsVouchedFor(const Link& link) const {
+  const PairTable::Pair* pair = pairs_.AssignedTo(link.sender);
+  if (pair == nullptr || IsHeldByAnother(pair->track_id, link.sender)) return false;
+  return pair->evidence.level() <= settings_->priority.safe.max_level &&
+         std::ranges::any_of(sensed_, [&](const Sensed& sensed) {
+           return sensed.track.id == pair->track_id && WasHit(sensed.track, sensed_stamp_);
+         });
+}
+
+void PriorityPerception::LookAtClaims(const LocalFrame& frame, const VisibilityMap& map,
+                                      Outputs& outputs) {
+  const TrustConfig& config = settings_->priority.trust;
+  for (Link& link : links_) {
+    if (const PriorityVehicle* vehicle = VehicleOf(link.sender)) {
+      if (vehicle->is_supported) {
+        link.place.OnVouched();
+        continue;
+      }
+    }
+    if (!link.has_last || !link.place.IsDue(frame.stamp, config.place)) continue;
+    const double age_s = ToSeconds(frame.stamp - link.last.stamp);
+    if (std::abs(age_s) > kMaxClaimAge_s) continue;
+    if (link.height_m && ego_height_m_ &&
+        std::abs(*link.height_m - *ego_height_m_) >
+            settings_->priority.safe.max_height_difference_m) {
+      continue;
+    }
+    if (IsVouchedFor(link)) {
+      link.place.OnVouched();
+      continue;
+    }
+    link.place.OnLook(frame.stamp, LookAround(link, frame, map), config.place);
+    if (const auto finding = link.place.Judge(config.accuse_hold_s, config.place)) {
+      link.trust.OnFinding(frame.stamp, *finding, MayAccuse(frame.stamp));
+      Report(link, frame.stamp, outputs);
+    }
+  }
+}
+
+std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> PriorityPerception::LookAround(
+    const Link& link, const LocalFrame& frame, const VisibilityMap& map) const {
+  const ClaimedPlaceConfig& config = settings_->priority.trust.place;
+  std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> looks{};
+  const ClaimInOdometry& claim = link.last;
+  const double c = std::cos(claim.yaw_rad);
+  const double s = std::sin(claim.yaw_rad);
+  const double age_s = ToSeconds(frame.stamp - claim.stamp);
+  const Eigen::Vector2d p_O = claim.p_O + age_s * claim.speed_mps * Eigen::Vector2d(c, s);
+  if ((p_O - frame.ego.X_OB.origin().vector()).norm() > config.max_distance_m) return looks;
+  const double variance = config.bias_sigma_m * config.bias_sigma_m +
+                          0.5 * (claim.noise.trace() + claim.alignment.trace());
+  const double across_m = std::sqrt(variance);
+  const double along_m = std::hypot(across_m, kStale_s * claim.speed_mps);
+  for (std::size_t i = 0; i < ClaimedPlace::kPlaces; ++i) {
+    const ClaimedPlace::Place& place = ClaimedPlace::Places()[i];
+    const double x = along_m * place.along;
+    const double y = across_m * place.across;
+    const Occluder footprint{.centre_O = p_O + Eigen::Vector2d(c * x - s * y, s * x + c * y),
+                             .yaw_rad = claim.yaw_rad,
+                             .length_m = link.length_m.value_or(4.5),
+                             .width_m = link.width_m.value_or(1.8),
+                             .position_sigma_m = kPlaceSigma_m};
+    bool is_taken = false;
+    bool is_occupied = false;
+    for (const LocalTrack& track : frame.tracks) {
+      if (!WasHit(track, frame.stamp)) continue;
+      const double sigma_m =
+          std::sqrt(0.5 * (track.state_O.covariance(kX, kX) + track.state_O.covariance(kY, kY)));
+      if (IsHeldByAnother(track.id, link.sender)) {
+        is_taken = is_taken || AreClose(footprint, track, -0.5);
+        continue;
+      }
+      if (!AreClose(footprint, track, config.slack_m + sigma_m)) continue;
+      const double speed_mps =
+          std::abs(std::abs(claim.speed_mps) - std::abs(track.state_O.mean[kSpeed]));
+      const double speed_sigma_mps = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
+      is_occupied = is_occupied || speed_mps <= config.slack_mps + 2.0 * speed_sigma_mps;
+    }
+    if (!is_occupied && std::abs(claim.speed_mps) < kStanding_mps) {
+      is_occupied = map.HasStandingReturn(footprint.centre_O, kStandingReach_m);
+    }
+    if (is_occupied) {
+      looks[i].seen = ClaimedPlace::Seen::kOccupied;
+    } else if (is_taken) {
+      looks[i] = {ClaimedPlace::Seen::kEmpty, kTaken};
+    } else if (const auto detection = ClearDetection(footprint, frame, map, settings_->vehicle,
+                                                     settings_->priority.bridge.least_detection)) {
+      looks[i] = {ClaimedPlace::Seen::kEmpty, *detection};
+    }
+  }
+  return looks;
+}
+
+void PriorityPerception::JudgeCommonMode(Timestamp now) {
+  residual_means_.clear();
+  for (const Link& link : links_) {
+    const ResidualHistory& history = link.trust.history();
+    if (!history.is_settled() || ToSeconds(now - history.last()) > kResidual_s) continue;
+    residual_means_.push_back({link.sender, history.mean_O()});
+  }
+  const CommonModeConfig& config = settings_->priority.trust.common_mode;
+  const CommonMode seen(residual_means_, config);
+  if (seen.is_shifted()) {
+    shifted_ = now;
+    common_ = seen;
+  } else if (!IsShifted(now)) {
+    common_ = seen;
+  }
+}
+
+bool PriorityPerception::IsShifted(Timestamp now) const {
+  return shifted_ && ToSeconds(now - *shifted_) <= settings_->priority.trust.common_mode.hold_s;
+}
+
+bool PriorityPerception::IsHeldByAnother(std::uint64_t local_id, SenderId sender) const {
+  return std::ranges::any_of(vehicles_, [&](const PriorityVehicle& vehicle) {
+    return vehicle.id != 0 && vehicle.is_supported && vehicle.local_id == local_id &&
+           vehicle.sender != sender;
+  });
+}
+
+}  // namespace v2vouch
