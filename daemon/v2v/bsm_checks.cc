@@ -45,16 +45,18 @@ std::optional<Reason> ContentProblem(const Bsm& bsm) {
 }
 
 double ClaimedAge(const Bsm& bsm, const IntakeConfig& config) {
-  if (bsm.generation) return ToSeconds(bsm.stamp - *bsm.generation);
-  if (!bsm.sec_mark_ms) return config.default_age_s;
-  // secMark names a millisecond within some minute: the nearest one. The leap second, 60000 to
-  // 60999, shares its count of UTC microseconds with the first second of the next minute.
+  const Timestamp near = bsm.generation.value_or(bsm.stamp);
+  if (!bsm.sec_mark_ms) {
+    return bsm.generation ? ToSeconds(bsm.stamp - near) : config.default_age_s;
+  }
+  // The leap second, 60000 to 60999, shares its count of UTC microseconds with the first second of
+  // the next minute.
   constexpr std::int64_t kMinute_us = 60'000'000;
   const std::int64_t claimed_us = std::int64_t{*bsm.sec_mark_ms} * 1000 % kMinute_us;
-  std::int64_t age_us = (ToMicros(bsm.stamp) - claimed_us) % kMinute_us;
-  if (age_us < 0) age_us += kMinute_us;
-  if (age_us > kMinute_us / 2) age_us -= kMinute_us;
-  return static_cast<double>(age_us) * 1e-6;
+  std::int64_t before_us = (ToMicros(near) - claimed_us) % kMinute_us;
+  if (before_us < 0) before_us += kMinute_us;
+  if (before_us > kMinute_us / 2) before_us -= kMinute_us;
+  return ToSeconds(bsm.stamp - near) + static_cast<double>(before_us) * 1e-6;
 }
 
 Claim ToClaim(const Bsm& bsm, double age_s, const IntakeConfig& config) {

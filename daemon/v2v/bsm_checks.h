@@ -13,7 +13,11 @@ namespace v2vouch {
 /// What a BSM lacks or says that cannot be, by itself. nullopt: nothing.
 std::optional<Reason> ContentProblem(const Bsm& bsm);
 
-/// Reception minus claimed time of the content [s]; negative where the content is from the future.
+/// Reception minus claimed time of the place [s]; negative where it is from the future. secMark is
+/// the time of the place and names a millisecond within some minute: the one nearest to
+/// generationTime, which is when the message was signed, else to reception. Without secMark:
+/// generationTime itself; without either: default_age_s.
+/// Source: SAE J2735, DE_DSecond; IEEE 1609.2, generationTime.
 double ClaimedAge(const Bsm& bsm, const IntakeConfig& config);
 
 /// The claim of a BSM without content problem. A yaw rate that cannot be (over 1.5 rad/s, or

@@ -56,10 +56,23 @@ TEST(ClaimedAge, TheLeapSecondSharesItsCountWithTheNextMinutesFirst) {
   EXPECT_NEAR(ClaimedAge(ReceivedAt(61.1, 60999), {}), 0.101, 1e-9);
 }
 
-TEST(ClaimedAge, GenerationTimeGoesBeforeSecMarkAndSeesThroughWholeMinutes) {
+// Signed 30 ms before reception, of a place 110 ms older.
+TEST(ClaimedAge, IsThatOfThePlaceNotOfTheSignature) {
+  Bsm bsm = ReceivedAt(12.345, 12205);
+  bsm.generation = bsm.stamp - FromSeconds(0.03);
+  EXPECT_NEAR(ClaimedAge(bsm, {}), 0.14, 1e-9);
+}
+
+TEST(ClaimedAge, GenerationTimeTellsTheMinute) {
   Bsm bsm = ReceivedAt(12.3, 12200);
-  bsm.generation = bsm.stamp - FromSeconds(60.1);
+  bsm.generation = bsm.stamp - FromSeconds(60.03);
   EXPECT_NEAR(ClaimedAge(bsm, {}), 60.1, 1e-9);
+}
+
+TEST(ClaimedAge, WithoutSecMarkItIsThatOfTheSignature) {
+  Bsm bsm = ReceivedAt(12.3, std::nullopt);
+  bsm.generation = bsm.stamp - FromSeconds(0.25);
+  EXPECT_NEAR(ClaimedAge(bsm, {}), 0.25, 1e-9);
 }
 
 TEST(ClaimedAge, IsTheDefaultWhereNoTimeIsTold) {
