@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "daemon/v2v/bsm_checks.h"
 #include "daemon/v2v/sender_filter.h"
@@ -28,16 +29,26 @@ BsmIntake::BsmIntake(const IntakeConfig& config)
       new_tokens_(config.max_new_senders_per_s) {
   senders_.reserve(static_cast<std::size_t>(config.max_senders));
   accounts_.reserve(static_cast<std::size_t>(config.max_senders));
+  checks_.resize(static_cast<std::size_t>(config.max_senders));
+  free_slots_.resize(checks_.size());
+  // The lowest is handed out first.
+  std::iota(free_slots_.rbegin(), free_slots_.rend(), 0U);
 }
 
 Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
-  if (const auto problem = ContentProblem(bsm)) return *problem;
+  if (const auto problem = ContentProblem(bsm)) {
+    const std::size_t known = IndexOf(bsm.sender);
+    if (*problem == Reason::kBsmImplausible && Holds(known, bsm.sender)) {
+      checks_[accounts_[known].slot].OnImplausible();
+    }
+    return *problem;
+  }
   const double age = ClaimedAge(bsm, config_);
   if (age > config_.max_age_s) return Reason::kBsmStale;
   if (age < -config_.max_future_s) return Reason::kBsmFuture;
   if (config_.own_id != 0 && bsm.sender == config_.own_id) return Reason::kBsmOwnEcho;
   if (!ego.is_known) return Reason::kNoGnss;
-  const Claim claim = ToClaim(bsm, age, config_);
+  Claim claim = ToClaim(bsm, age, config_);
   if (IsOwnEcho(claim, ego, config_)) return Reason::kBsmOwnEcho;
   if (HorizontalDistance(ego.p_E, claim.p_E) > config_.max_distance_m) {
     return Reason::kBsmImplausible;
@@ -58,6 +69,7 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
 
   std::size_t index = IndexOf(bsm.sender);
   const bool is_known = Holds(index, bsm.sender);
+  if (is_known) checks_[accounts_[index].slot].OnHeard(bsm.stamp);
   if (total_tokens_ < (is_known ? 1.0 : 0.5 * total_room)) return Reason::kBsmRate;
   if (is_known) {
     Account& account = accounts_[index];
@@ -67,6 +79,7 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
     account.last = bsm.stamp;
     if (account.tokens < 1.0) {
       ++senders_[index].over_rate;
+      checks_[account.slot].OnOverRate(bsm.stamp);
       return Reason::kBsmRate;
     }
     account.tokens -= 1.0;
@@ -79,24 +92,28 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
     index = IndexOf(bsm.sender);
     const auto at = static_cast<std::ptrdiff_t>(index);
     senders_.insert(senders_.begin() + at, StartSender(bsm, claim));
+    const std::uint32_t slot = free_slots_.back();
+    free_slots_.pop_back();
+    checks_[slot] = SenderChecks{};
+    checks_[slot].OnHeard(bsm.stamp);
     accounts_.insert(accounts_.begin() + at,
-                     Account{bsm.sender, false, config_.burst - 1.0, bsm.stamp});
+                     Account{bsm.sender, false, slot, config_.burst - 1.0, bsm.stamp});
   }
   total_tokens_ -= 1.0;
   repeats_.Keep(bsm);
-  if (heard.finding == RepeatMemory::Finding::kOtherSender) {
-    Contest(heard.id_tag, senders_[index]);
-  }
+  if (heard.finding == RepeatMemory::Finding::kOtherSender) Contest(heard.id_tag, index);
+  claim.finding = checks_[accounts_[index].slot].Judge(claim, senders_[index], config_.checks);
   return claim;
 }
 
 // Two ids with the same core: one of them copied. Both are marked.
-void BsmIntake::Contest(std::uint16_t id_tag, SenderTrack& copy) {
-  const Timestamp now = copy.latest.received;
-  for (SenderTrack& track : senders_) {
-    if (&track != &copy && RepeatMemory::IdTag(track.sender) != id_tag) continue;
-    ++track.contested;
-    track.last_contested = now;
+void BsmIntake::Contest(std::uint16_t id_tag, std::size_t copy) {
+  const Timestamp now = senders_[copy].latest.received;
+  for (std::size_t i = 0; i < accounts_.size(); ++i) {
+    if (i != copy && RepeatMemory::IdTag(accounts_[i].sender) != id_tag) continue;
+    ++senders_[i].contested;
+    senders_[i].last_contested = now;
+    checks_[accounts_[i].slot].OnContested(now);
   }
 }
 
@@ -125,7 +142,10 @@ void BsmIntake::Expire(Timestamp now) {
   swept_ = now;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < accounts_.size(); ++i) {
-    if (ToSeconds(now - accounts_[i].last) > config_.sender_timeout_s) continue;
+    if (ToSeconds(now - accounts_[i].last) > config_.sender_timeout_s) {
+      free_slots_.push_back(accounts_[i].slot);
+      continue;
+    }
     if (kept != i) {
       accounts_[kept] = accounts_[i];
       senders_[kept] = senders_[i];
@@ -157,6 +177,7 @@ bool BsmIntake::Holds(std::size_t index, SenderId sender) const {
 }
 
 void BsmIntake::Remove(std::size_t index) {
+  free_slots_.push_back(accounts_[index].slot);
   accounts_.erase(accounts_.begin() + static_cast<std::ptrdiff_t>(index));
   senders_.erase(senders_.begin() + static_cast<std::ptrdiff_t>(index));
 }

@@ -12,7 +12,9 @@
 #include "daemon/data/input.h"
 #include "daemon/data/track.h"
 #include "daemon/geodesy/ecef.h"
+#include "daemon/v2v/message_check_config.h"
 #include "daemon/v2v/repeat_memory.h"
+#include "daemon/v2v/sender_checks.h"
 
 namespace v2vouch {
 
@@ -34,6 +36,7 @@ struct IntakeConfig {
   double unknown_position_sigma_m = 2.0;
   bool message_verdicts = false;  ///< Report of every message what became of it.
   std::uint32_t own_id = 0;       ///< Our own TemporaryID where fixed; 0 = unknown.
+  MessageCheckConfig checks{};
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -53,6 +56,7 @@ struct IntakeConfig {
     a.Field("max_position_sigma_m", max_position_sigma_m, {.above = 0.0, .at_most = 20.0});
     a.Field("unknown_position_sigma_m", unknown_position_sigma_m, {.above = 0.0, .at_most = 20.0});
     a.Field("message_verdicts", message_verdicts);
+    a.Field("checks", checks);
   }
 };
 
@@ -79,6 +83,9 @@ struct SenderTrack {
   double clean_run = 0.0;  ///< Consecutive messages consistent with the sender's own motion.
   double nis_mean =
       0.0;  ///< Of the last ten or so messages; 4 where consistent (3 without course).
+  /// Of the latest message; none where its motion started anew for a jump or a silence.
+  std::optional<double> latest_nis;
+  int nis_freedom = 4;          ///< Of latest_nis.
   std::uint64_t resets = 0;     ///< Times the motion broke off: jumps, long silences.
   std::uint64_t lost = 0;       ///< Messages missing by msgCnt.
   std::uint64_t over_rate = 0;  ///< Messages refused because the sender speaks too often.
@@ -88,13 +95,12 @@ struct SenderTrack {
   std::optional<Timestamp> last_contested;
 };
 
-/// Takes BSMs in (DESIGN 5.6, notes C1-C5). A function of the BSM stream alone but for the ego's
-/// place. In this order, cheapest first, each refusal with its reason:
+/// Takes BSMs in. A function of the BSM stream alone but for the ego's place. In this order,
+/// cheapest first, each refusal with its reason:
 ///
 /// - invalid signature: kBsmSignature; position or speed unavailable: kBsmUnavailable; not finite:
 ///   kNotFinite; speed over 70 m/s, acceleration over 12 m/s^2, lateral over 9: kBsmImplausible
-/// - age by generation time, else secMark (wrapped to half a minute; a leap second counts as the
-///   next minute's first), else default_age_s: kBsmStale, kBsmFuture
+/// - age of the content (ClaimedAge): kBsmStale, kBsmFuture
 /// - ego's place unknown: kNoGnss; our own message: kBsmOwnEcho; too far: kBsmImplausible
 /// - heard before (same id, msgCnt, secMark, place): kBsmRepeat
 /// - rates, of the sender and of all: kBsmRate. Once half of the total budget is spent, only known
@@ -102,7 +108,10 @@ struct SenderTrack {
 /// - new identities beyond their budget, or no room: kBsmTableFull. A full table gives up the
 ///   sender unheard for longest, never a pinned one, never one heard in the last second
 ///
-/// Cost O(log senders) and a fixed filter step; no allocation after construction.
+/// An accepted claim carries the gravest that the sender's own messages have against it
+/// (SenderChecks), refused ones included.
+///
+/// Cost O(log senders), a fixed filter step and fixed checks; no allocation after construction.
 class BsmIntake {
  public:
   explicit BsmIntake(const IntakeConfig& config);
@@ -126,6 +135,7 @@ class BsmIntake {
   struct Account {
     SenderId sender = 0;
     bool is_pinned = false;
+    std::uint32_t slot = 0;  // Of checks_.
     double tokens = 0.0;
     Timestamp last{};
   };
@@ -134,11 +144,13 @@ class BsmIntake {
   [[nodiscard]] bool Holds(std::size_t index, SenderId sender) const;
   [[nodiscard]] std::optional<Reason> MakeRoom(Timestamp now);
   void Remove(std::size_t index);
-  void Contest(std::uint16_t id_tag, SenderTrack& copy);
+  void Contest(std::uint16_t id_tag, std::size_t copy);
 
   IntakeConfig config_;
   std::vector<SenderTrack> senders_;
   std::vector<Account> accounts_;
+  std::vector<SenderChecks> checks_;  // By slot: they stay where they are when senders come and go.
+  std::vector<std::uint32_t> free_slots_;
   RepeatMemory repeats_;
   double total_tokens_ = 0.0;
   double new_tokens_ = 0.0;

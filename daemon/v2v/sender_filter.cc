@@ -126,6 +126,7 @@ bool AdvanceSender(SenderTrack& track, const Bsm& bsm, const Claim& claim) {
 
   const double displacement = HorizontalDistance(track.latest.p_E, claim.p_E);
   track.latest = claim;
+  track.latest_nis.reset();
   bool is_broken =
       dt > kLongestSilence_s || displacement > std::max(kMaxSpeed_mps * dt, kMinJump_m);
   if (!is_broken) {
@@ -140,6 +141,8 @@ bool AdvanceSender(SenderTrack& track, const Bsm& bsm, const Claim& claim) {
     if (llt.info() != Eigen::Success) return false;
     const double nis = y.dot(llt.solve(y));
     const double bounded = std::min(nis, kBroken);
+    track.latest_nis = nis;
+    track.nis_freedom = claim.has_course ? 4 : 3;
     track.nis_mean +=
         (bounded - track.nis_mean) / std::min(kNisWindow, static_cast<double>(track.messages - 1));
     track.clean_run =
