@@ -17,6 +17,7 @@ constexpr double kPairReach_m = 20.0;   // No claim, however poor, starts a pair
 constexpr double kUnknownAccel_mps2 = 4.0;
 constexpr double kOwnMotionFloor_m = 2.0;
 constexpr double kSeen_s = 0.15;  // Co-observed means: a hit of the same moment, not of support's.
+constexpr int kBreakMemory = 30;  // Messages for which a break of the own motion is held against.
 constexpr int kMostVelocityDoubts = 2;
 constexpr double kHeirSpeed_mps = 2.0;
 constexpr double kHeirYaw_rad = FromDegrees(20.0);
@@ -72,6 +73,7 @@ void PriorityPerception::JudgeMessages(Link& link, const PriorityVehicle* vehicl
     is_consistent = (here.p_O - expected).norm() <=
                     kOwnMotionFloor_m + 3.0 * sigma_m + 0.5 * kUnknownAccel_mps2 * dt_s * dt_s;
   }
+  link.breaks = is_consistent ? std::max(0, link.breaks - 1) : kBreakMemory;
   link.trust.OnMessage(here.stamp, is_consistent, config);
   if (!claim.finding) return;
   const bool is_seen = vehicle != nullptr && vehicle->is_supported && link.trust.is_relied_on();
@@ -170,7 +172,7 @@ PriorityVehicle* PriorityPerception::Inherit(Link& link, const ClaimInOdometry& 
 }
 
 // Raw residuals against the LOCAL track the sender is taken for. Hidden vehicles have none.
-void PriorityPerception::CompareWithSensors(Link& link, const PriorityVehicle* vehicle,
+void PriorityPerception::CompareWithSensors(Link& link, PriorityVehicle* vehicle,
                                             const ClaimInOdometry& here) {
   const PriorityConfig& config = settings_->priority;
   std::uint64_t local_id = 0;
@@ -188,7 +190,11 @@ void PriorityPerception::CompareWithSensors(Link& link, const PriorityVehicle* v
   observation.is_ego_shifted = IsShifted(here.stamp);
   observation.shift_O = common_.shift_O();
   const bool may_accuse = MayAccuse(here.stamp) && common_.HasWitnessAgainst(link.sender);
-  link.trust.OnCoObservation(observation, may_accuse, config.trust);
+  if (!link.trust.OnCoObservation(observation, may_accuse, config.trust)) {
+    pairs_.DropSender(link.sender);
+    if (vehicle != nullptr) EndVehicle(*vehicle);
+    return;
+  }
   if (vehicle == nullptr || !link.trust.is_relied_on() || alignment_.is_suspect()) return;
   const Eigen::Matrix2d R_LO = alignment_.X_LO().rotation();
   const Eigen::Matrix2d P = state->covariance.topLeftCorner<2, 2>() + here.noise + here.alignment;
@@ -219,14 +225,18 @@ void PriorityPerception::UseClaim(Link& link, PriorityVehicle& vehicle,
     vehicle.misfits_in_a_row = 0;
     if (++vehicle.velocity_doubts > kMostVelocityDoubts) return EndVehicle(vehicle);
   }
-  if (vehicle.misfits_in_a_row >= config.bridge.max_misfits) {
-    return link.trust.OnFinding(here.stamp,
-                                {"bridge_misfit", Verdict::kWithdraw, "position_nis",
-                                 fit.position_nis, config.filter.position_gate},
-                                MayAccuse(here.stamp));
-  }
+  // While a sender's messages continue each other, what does not fit may be what we carried: the
+  // last look had but a part of the vehicle, or the vehicle has turned. Then the bridge just ends.
+  const bool is_own_break = link.breaks > 0;
   const Eigen::Vector2d p_O = vehicle.filter.mean().head<2>();
-  if (!vehicle.CanReach(p_O, here.stamp, config.bridge)) {
+  if (vehicle.misfits_in_a_row >= config.bridge.max_misfits) {
+    if (!is_own_break) return EndVehicle(vehicle);
+    link.trust.OnFinding(here.stamp,
+                         {"bridge_misfit", Verdict::kWithdraw, "position_nis", fit.position_nis,
+                          config.filter.position_gate},
+                         MayAccuse(here.stamp));
+  } else if (!vehicle.CanReach(p_O, here.stamp, config.bridge)) {
+    if (!is_own_break) return EndVehicle(vehicle);
     link.trust.OnFinding(here.stamp,
                          {"out_of_reach", Verdict::kWithdraw, "distance_m",
                           (p_O - vehicle.coast.state().mean.head<2>()).norm(), 0.0},

@@ -96,6 +96,12 @@ CoObservation ForTrust(const ClaimInOdometry& claim, const KinematicState& sense
   observation.speed_sigma_mps = std::sqrt(sensed.covariance(kSpeed, kSpeed));
   observation.yaw_residual_rad = velocity.yaw_rad;
   observation.yaw_sigma_rad = std::sqrt(sensed.covariance(kYaw, kYaw));
+  if (claim.has_course) {
+    observation.velocity_residual_O =
+        claim.speed_mps * Eigen::Vector2d(std::cos(claim.yaw_rad), std::sin(claim.yaw_rad)) -
+        sensed.mean[kSpeed] *
+            Eigen::Vector2d(std::cos(sensed.mean[kYaw]), std::sin(sensed.mean[kYaw]));
+  }
   observation.accel_residual_mps2 = claim.accel_mps2 - sensed.mean[kAccel];
   observation.accel_sigma_mps2 = std::sqrt(sensed.covariance(kAccel, kAccel));
   observation.sensed_sigma_m =

@@ -91,7 +91,9 @@ void PriorityPerception::OnClaim(const Claim& claim, const EgoState& ego, Output
   if (vehicle == nullptr) vehicle = Inherit(*link, here, outputs);
   link = FindLink(claim.sender);  // Inherit may have moved it.
   CompareWithSensors(*link, vehicle, here);
-  if (vehicle != nullptr) {
+  if (vehicle != nullptr && vehicle->id == 0) {
+    vehicle = nullptr;  // Torn from its LOCAL track.
+  } else if (vehicle != nullptr) {
     UseClaim(*link, *vehicle, here);
   } else {
     TryValidate(*link, here);

@@ -90,6 +90,7 @@ class PriorityPerception {
     std::optional<double> length_m;  // As claimed.
     std::optional<double> width_m;
     ClaimedPlace place;
+    int breaks = 0;                  // Above 0: its messages lately did not continue each other.
     int odd_claims = 0;              // In a row that are not where the sensors see the sender.
     std::optional<double> height_m;  // Smoothed; GNSS heights are noisy.
     std::optional<BiasEstimate> prior_en;
@@ -146,7 +147,7 @@ class PriorityPerception {
                                                        Timestamp stamp) const;
   void ObservePairs(Link& link, const ClaimInOdometry& here);
   PriorityVehicle* Inherit(Link& link, const ClaimInOdometry& here, Outputs& outputs);
-  void CompareWithSensors(Link& link, const PriorityVehicle* vehicle, const ClaimInOdometry& here);
+  void CompareWithSensors(Link& link, PriorityVehicle* vehicle, const ClaimInOdometry& here);
   void UseClaim(Link& link, PriorityVehicle& vehicle, const ClaimInOdometry& here);
   void TryValidate(Link& link, const ClaimInOdometry& here);
 

@@ -7,6 +7,7 @@
 namespace v2vouch {
 namespace {
 
+constexpr double kJitter_s = 0.05;  // Of a position's time, from message to message.
 // Of a false velocity, by which the residual of the position must move with it.
 constexpr double kConfirmedShare = 0.5;
 // Share of the ego's own pose error that may come and go within ten seconds.
@@ -44,6 +45,21 @@ std::optional<Finding> JudgeResidual(std::string_view check, const Eigen::Vector
 
 void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& config) {
   const double dt_s = has_any_ ? std::max(0.0, ToSeconds(observation.stamp - last_)) : 0.0;
+  if (has_any_ && dt_s <= 1.0) {
+    Eigen::Vector2d step = observation.residual_O - last_residual_;
+    if (observation.velocity_residual_O) step -= dt_s * *observation.velocity_residual_O;
+    unexplained_ = std::exp(-dt_s / config.mean_time_s) * unexplained_ + step;
+    const double limit_m = config.torn_m + 2.0 * observation.sensed_sigma_m +
+                           kJitter_s * std::abs(observation.track_speed_mps);
+    is_torn_ = unexplained_.norm() > limit_m;
+  } else {
+    // After a time unseen the vehicle has come back, or another has been taken for it.
+    const double limit_m = config.torn_m + 2.0 * observation.sensed_sigma_m +
+                           kJitter_s * std::abs(observation.track_speed_mps);
+    is_torn_ = has_any_ && (observation.residual_O - mean_).norm() > limit_m;
+    unexplained_.setZero();
+  }
+  last_residual_ = observation.residual_O;
   // A plain mean at first, so that one wild first residual does not linger; fading afterwards.
   const double span_s = std::max(std::min(time_s_ + dt_s, config.mean_time_s), 1e-3);
   const double w = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / span_s) : 1.0;

@@ -20,6 +20,8 @@ struct CoObservation {
   Timestamp stamp{};
   Eigen::Vector2d residual_O = Eigen::Vector2d::Zero();  ///< Claimed minus sensed [m].
   double alignment_sigma_m = 0.0;  ///< Ego pose error here; not the sender's fault.
+  /// Claimed minus sensed velocity; unknown where no course is claimed.
+  std::optional<Eigen::Vector2d> velocity_residual_O;
   double track_yaw_rad = 0.0;
   double track_speed_mps = 0.0;
   double speed_residual_mps = 0.0;
@@ -54,6 +56,9 @@ class ResidualHistory {
   [[nodiscard]] double accel_sigma_mps2() const { return accel_sigma_; }
   [[nodiscard]] double time_s() const { return time_s_; }
   [[nodiscard]] Timestamp last() const { return last_; }
+  /// The residual has lately gone where neither motion took it: one of the two has jumped, within a
+  /// second and by more than torn_m (and 0.05 s of speed, and twice the sensors' own sigma).
+  [[nodiscard]] bool is_torn() const { return is_torn_; }
   /// Two-second mean 10 s ago, or the first two seconds where there are not yet 10.
   [[nodiscard]] std::optional<Eigen::Vector2d> reference_O() const;
 
@@ -62,7 +67,10 @@ class ResidualHistory {
   static constexpr double kFastShare = 0.3;  // Of mean_time_s.
   bool has_any_ = false;
   bool has_yaw_ = false;
+  bool is_torn_ = false;
   Timestamp last_{};
+  Eigen::Vector2d last_residual_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d unexplained_ = Eigen::Vector2d::Zero();  // Fading sum of such steps.
   double time_s_ = 0.0;  // Under observation, gaps over 1 s not counted.
   Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d fast_mean_ = Eigen::Vector2d::Zero();

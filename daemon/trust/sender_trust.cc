@@ -44,10 +44,15 @@ void SenderTrust::OnMessage(Timestamp stamp, bool is_consistent, const TrustConf
   }
 }
 
-void SenderTrust::OnCoObservation(const CoObservation& observation, bool may_accuse,
+bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_accuse,
                                   const TrustConfig& config) {
   const double dt_s = ToSeconds(observation.stamp - history_.last());
   history_.Add(observation, config);
+  if (history_.is_torn() && consistent_run_ >= config.candidate_messages) {
+    Release();
+    history_ = {};
+    return false;
+  }
   std::optional<Finding> gravest;
   for (const auto check : {CheckLevel, CheckDrift, CheckVelocity, CheckAcceleration}) {
     const auto finding = check(history_, observation, config);
@@ -56,22 +61,24 @@ void SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
   if (!gravest || gravest->severity != Verdict::kAccuse || !may_accuse) accusable_since_.reset();
   if (!gravest) {
     clean_s_ += std::clamp(dt_s, 0.0, kMostCredit_s);
-    return;
+    return true;
   }
   clean_s_ = 0.0;
   // What does not fit a stranger's track may be the track: another's, or none.
   if (!is_relied_on() && !has_penalty()) {
     state_ = TrustState::kUnknown;
     consistent_run_ = 0;
-    return;
+    return true;
   }
   if (gravest->severity == Verdict::kAccuse && may_accuse) {
     if (!accusable_since_) accusable_since_ = observation.stamp;
     if (ToSeconds(observation.stamp - *accusable_since_) >= config.accuse_hold_s) {
-      return Revoke(observation.stamp, *gravest);
+      Revoke(observation.stamp, *gravest);
+      return true;
     }
   }
   Suspect(observation.stamp, *gravest);
+  return true;
 }
 
 void SenderTrust::OnFinding(Timestamp stamp, const Finding& finding, bool may_accuse) {

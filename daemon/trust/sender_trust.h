@@ -60,9 +60,11 @@ class SenderTrust {
   /// A message, and whether it continues the sender's own motion.
   void OnMessage(Timestamp stamp, bool is_consistent, const TrustConfig& config);
 
-  /// A claim beside its LOCAL track. @return the gravest finding, already acted upon where it
-  /// changed the state (`verdict` of TakeVerdict).
-  void OnCoObservation(const CoObservation& observation, bool may_accuse,
+  /// A claim beside its LOCAL track. Acts on the gravest finding; TakeVerdict() tells.
+  /// @return false where the two have been torn apart while the sender's messages continue each
+  /// other: the LOCAL track has jumped to something else. Then nobody is to blame and the sender
+  /// starts from zero; Release() has been called.
+  bool OnCoObservation(const CoObservation& observation, bool may_accuse,
                        const TrustConfig& config);
 
   /// Any other finding (negative evidence, leaving the reachable set, the message stream, ...).

@@ -23,6 +23,7 @@ struct TrustConfig {
   double stale_position_s = 0.15;   ///< C8, C9: along-track limits grow by this times speed.
   double speed_withdraw_mps = 1.0;  ///< C10: claimed against sensed velocity.
   double speed_accuse_mps = 2.0;
+  double torn_m = 2.5;     ///< A residual that jumps by so much was torn by one of the two sides.
   double leaving_m = 1.5;  ///< C10: only once the position has come so far from where it was.
   double heading_withdraw_rad = FromDegrees(15.0);  ///< C10, above heading_min_speed_mps.
   double heading_accuse_rad = FromDegrees(30.0);
@@ -54,6 +55,7 @@ struct TrustConfig {
     a.Field("stale_position_s", stale_position_s, {.at_least = 0.0, .at_most = 1.0});
     a.Field("speed_withdraw_mps", speed_withdraw_mps, {.above = 0.0, .at_most = 20.0});
     a.Field("speed_accuse_mps", speed_accuse_mps, {.above = 0.0, .at_most = 20.0});
+    a.Field("torn_m", torn_m, {.above = 0.0, .at_most = 50.0});
     a.Field("leaving_m", leaving_m, {.at_least = 0.0, .at_most = 20.0});
     a.Degrees("heading_withdraw_deg", heading_withdraw_rad, {.above = 0.0, .at_most = 180.0});
     a.Degrees("heading_accuse_deg", heading_accuse_rad, {.above = 0.0, .at_most = 180.0});
