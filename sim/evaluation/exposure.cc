@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 
 #include "sim/evaluation/joint_view.h"
 #include "sim/evaluation/placing.h"
@@ -58,17 +57,22 @@ class Meter {
       return;
     }
     const std::vector<TrueBox> boxes = TrueBoxes(log_.truth, t);
+    const auto ego = log_.truth.ego.At(t);
     if (placed.size() > boxes.size()) ++result_.outnumbered;
     std::map<std::size_t, int> claimed;
     std::map<std::int64_t, double> ghosts_now;
+    const double since_s = ToSeconds(t - log_.truth.begin());
     for (const PlacedTrack& track : placed) {
       const Eigen::Vector2d p_W = track.motion_W.position();
+      if (!ego || (p_W - ego->position()).norm() > Exposure::kReach_m) continue;
       const Nearest nearest = NearestBox(boxes, p_W);
       const double exposure_m = Finite(nearest.distance_m);
       if (nearest.distance_m <= kSame_m && nearest.second_m > kOther_m) ++claimed[nearest.object];
       const Senders::Attack* attack = senders_.AttackUnder(track.track->sender, t);
       if (exposure_m > Exposure::kGhost_m) {
-        TakeGhost(track.track->id, exposure_m, period_s, attack != nullptr, ghosts_now);
+        const Ghost now{track.track->id, track.track->sender, attack != nullptr, since_s,
+                        since_s,         exposure_m};
+        TakeGhost(now, period_s, ghosts_now);
       }
       if (attack != nullptr) TakeAttacker(*attack, t, p_W, boxes, exposure_m, period_s);
     }
@@ -79,21 +83,25 @@ class Meter {
                            : 0;
   }
 
-  Exposure Finish() {
-    result_.ghosts = static_cast<int>(counted_.size());
-    return std::move(result_);
-  }
+  Exposure Finish() { return std::move(result_); }
 
  private:
-  void TakeGhost(std::int64_t id, double exposure_m, double period_s, bool is_attacker,
-                 std::map<std::int64_t, double>& ghosts_now) {
-    const auto before = ghosts_.find(id);
+  void TakeGhost(const Ghost& now, double period_s, std::map<std::int64_t, double>& ghosts_now) {
+    const auto before = ghosts_.find(now.track);
     const double lasted_s = before == ghosts_.end() ? 0.0 : before->second + period_s;
-    ghosts_now[id] = lasted_s;
+    ghosts_now[now.track] = lasted_s;
     // Half a period of tolerance: the grid is rounded to microseconds.
     if (lasted_s < Exposure::kGhost_s - 0.5 * period_s) return;
-    result_.ghost_max_m = std::max(result_.ghost_max_m, exposure_m);
-    if (counted_.insert(id).second && is_attacker) ++result_.ghosts_of_attackers;
+    const auto known = std::find_if(result_.ghosts.begin(), result_.ghosts.end(),
+                                    [&](const Ghost& g) { return g.track == now.track; });
+    if (known == result_.ghosts.end()) {
+      result_.ghosts.push_back(now);
+      result_.ghosts.back().from_s -= lasted_s;
+    } else {
+      known->to_s = now.to_s;
+      known->is_of_attacker |= now.is_of_attacker;
+      known->max_m = std::max(known->max_m, now.max_m);
+    }
   }
 
   void TakeAttacker(const Senders::Attack& attack, Timestamp t, const Eigen::Vector2d& p_W,
@@ -116,11 +124,15 @@ class Meter {
   const Senders& senders_;
   std::optional<Timestamp> begin_;
   std::map<std::int64_t, double> ghosts_;  // Seconds above the limit on end, by track.
-  std::set<std::int64_t> counted_;
   Exposure result_;
 };
 
 }  // namespace
+
+int Exposure::ghosts_of_attackers() const {
+  return static_cast<int>(
+      std::count_if(ghosts.begin(), ghosts.end(), [](const Ghost& g) { return g.is_of_attacker; }));
+}
 
 Exposure MeasureExposure(const RunLog& log, const Senders& senders) {
   ScoringSettings settings;

@@ -62,15 +62,23 @@ SourceOutcome ToSource(const Json& json) {
 Json FromExposure(const Exposure& e) {
   Json curve = Json::array();
   for (const double v : e.curve_m) curve.push_back(Rounded(v));
+  Json ghosts = Json::array();
+  for (const Ghost& ghost : e.ghosts) {
+    ghosts.push_back({{"track", ghost.track},
+                      {"sender", ghost.sender},
+                      {"of_attacker", ghost.is_of_attacker},
+                      {"from_s", Rounded(ghost.from_s)},
+                      {"to_s", Rounded(ghost.to_s)},
+                      {"max_m", Rounded(ghost.max_m)}});
+  }
   return {{"max_m", Rounded(e.max_m)},
           {"harm_s", Rounded(e.harm_s)},
           {"original_max_m", Rounded(e.original_max_m)},
           {"original_harm_s", Rounded(e.original_harm_s)},
           {"priority_s", Rounded(e.priority_s)},
           {"curve_m", std::move(curve)},
-          {"ghost_publications", e.ghosts},
-          {"ghosts_of_attackers", e.ghosts_of_attackers},
-          {"ghost_max_m", Rounded(e.ghost_max_m)},
+          {"ghost_publications", e.ghosts.size()},
+          {"ghosts", std::move(ghosts)},
           {"instants", e.instants},
           {"outnumbered_instants", e.outnumbered},
           {"doubled_instants", e.doubled}};
@@ -84,9 +92,11 @@ Exposure ToExposure(const Json& json) {
   e.original_harm_s = json.value("original_harm_s", 0.0);
   e.priority_s = json.value("priority_s", 0.0);
   e.curve_m = json.value("curve_m", std::vector<double>{});
-  e.ghosts = json.value("ghost_publications", 0);
-  e.ghosts_of_attackers = json.value("ghosts_of_attackers", 0);
-  e.ghost_max_m = json.value("ghost_max_m", 0.0);
+  for (const Json& ghost : json.value("ghosts", Json::array())) {
+    e.ghosts.push_back({ghost.value("track", std::int64_t{0}), ghost.value("sender", 0u),
+                        ghost.value("of_attacker", false), ghost.value("from_s", 0.0),
+                        ghost.value("to_s", 0.0), ghost.value("max_m", 0.0)});
+  }
   e.instants = json.value("instants", std::int64_t{0});
   e.outnumbered = json.value("outnumbered_instants", std::int64_t{0});
   e.doubled = json.value("doubled_instants", std::int64_t{0});
@@ -223,8 +233,13 @@ std::string SpoofTable(const SpoofRun& run) {
   out += Line("exposure", Fixed(e.max_m, 2) + " m at most, " + Fixed(e.harm_s, 2) + " s above " +
                               Number(Exposure::kHarm_m) + " m; to its first vehicle " +
                               Fixed(e.original_max_m, 2) + " m");
-  out += Line("ghost publications", std::to_string(e.ghosts) + " (" +
-                                        std::to_string(e.ghosts_of_attackers) + " of attackers)");
+  out += Line("ghost publications", std::to_string(e.ghosts.size()) + " (" +
+                                        std::to_string(e.ghosts_of_attackers()) + " of attackers)");
+  for (const Ghost& ghost : e.ghosts) {
+    out += Line("", "track " + std::to_string(ghost.track) + " from " + Fixed(ghost.from_s, 2) +
+                        " to " + Fixed(ghost.to_s, 2) + " s, up to " + Fixed(ghost.max_m, 1) +
+                        " m from anything real");
+  }
   out += Line("instants outnumbered, doubled", std::to_string(e.outnumbered) + ", " +
                                                    std::to_string(e.doubled) + " of " +
                                                    std::to_string(e.instants));

@@ -49,7 +49,7 @@ TEST_F(ExposureOf, AnAttackersTrackIsTheDistanceToTheNearestBoxOnceItAttacks) {
   ASSERT_EQ(e.curve_m.size(), 7u);
   EXPECT_NEAR(e.curve_m[1], 3.0, 1e-9);
   EXPECT_NEAR(e.curve_m[2], 4.0, 1e-9);
-  EXPECT_EQ(e.ghosts, 0);
+  EXPECT_TRUE(e.ghosts.empty());
   EXPECT_EQ(e.instants, 101);
 }
 
@@ -67,19 +67,31 @@ TEST_F(ExposureOf, AGhostLastsAFifthOfASecond) {
       return Eigen::Vector2d(30.0, -7.0);  // 6 m from car 1.
     };
   };
-  EXPECT_EQ(With(kHonest, from_to(1.16)).ghosts, 0);  // 1.00, 1.05, 1.10, 1.15: 0.15 s.
+  EXPECT_TRUE(With(kHonest, from_to(1.16)).ghosts.empty());  // 1.00, 1.05, 1.10, 1.15: 0.15 s.
   scene_.log_.lists[Index(ListKind::kPriority)].clear();
   const Exposure e = With(kHonest, from_to(1.21));
-  EXPECT_EQ(e.ghosts, 1);
-  EXPECT_EQ(e.ghosts_of_attackers, 0);
-  EXPECT_NEAR(e.ghost_max_m, 6.0, 1e-9);
+  ASSERT_EQ(e.ghosts.size(), 1u);
+  EXPECT_EQ(e.ghosts_of_attackers(), 0);
+  EXPECT_EQ(e.ghosts[0].track, 7);
+  EXPECT_EQ(e.ghosts[0].sender, kHonest);
+  EXPECT_NEAR(e.ghosts[0].from_s, 1.0, 1e-9);
+  EXPECT_NEAR(e.ghosts[0].to_s, 1.2, 1e-9);
+  EXPECT_NEAR(e.ghosts[0].max_m, 6.0, 1e-9);
+}
+
+TEST_F(ExposureOf, WhatIsBeyondTheTruthsReachIsNotJudged) {
+  const Exposure e = With(kLiar, [](double) { return Eigen::Vector2d(141.0, 0.0); });
+  EXPECT_TRUE(e.ghosts.empty());
+  EXPECT_EQ(e.max_m, 0.0);
 }
 
 TEST_F(ExposureOf, AGhostOfAnAttackerIsCountedOncePerTrack) {
   const Exposure e = With(kLiar, [](double t) {  // Comes, goes, and comes again.
     return t > 3.0 && t < 3.5 ? Eigen::Vector2d(30.0, 0.0) : Eigen::Vector2d(30.0, -7.0);
   });
-  EXPECT_EQ(e.ghosts, 1);
+  ASSERT_EQ(e.ghosts.size(), 1u);
+  EXPECT_EQ(e.ghosts_of_attackers(), 1);
+  EXPECT_NEAR(e.ghosts[0].to_s, 5.0, 1e-9);
 }
 
 TEST_F(ExposureOf, OneCarListedTwiceIsDoubledAndThreeForTwoOutnumber) {
