@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/campaign/summary.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "sim/campaign/targets.h"
+
+namespace v2vouch::campaign {
+namespace {
+
+using evaluation::SourceOutcome;
+using evaluation::SpoofRun;
+using testing::HasSubstr;
+
+RunRecord Record(Kind kind, const std::string& id, const std::string& variant, std::uint64_t seed) {
+  RunRecord record;
+  record.job.overlay = {kind, id, variant, "", false};
+  record.job.scenario = "urban";
+  record.job.seed = seed;
+  record.local_digest = "same";
+  record.ours.honest.vehicle_s = 360.0;
+  record.ours.honest.holdable_s = 100.0;
+  record.ours.honest.held_s = 98.0;
+  record.ours.honest.bridges = 10;
+  record.ours.honest.bridges_survived = 9;
+  return record;
+}
+
+RunRecord Attack(const std::string& id, const std::string& variant, std::uint64_t seed,
+                 std::optional<double> met_after_s, double exposure_m = 0.0) {
+  RunRecord record = Record(Kind::kAttack, id, variant, seed);
+  SourceOutcome source;
+  source.false_in_view_s = 4.0;
+  source.met_after_s = met_after_s;
+  source.was_detected = met_after_s.has_value();
+  record.ours.attackers = {source};
+  record.ours.by_message = {met_after_s ? 99 : 0, 0, met_after_s ? 1 : 100, 100};
+  record.ours.exposure.max_m = exposure_m;
+  return record;
+}
+
+const Target* Find(const std::vector<Target>& targets, const std::string& what) {
+  for (const Target& target : targets) {
+    if (target.what.find(what) != std::string::npos) return &target;
+  }
+  return nullptr;
+}
+
+TEST(Summary, PoolsByIdAndVariantInTheCataloguesOrder) {
+  const Summary s = Summarise({Attack("A11", "grid_5", 1, 1.0), Attack("A5", "lateral_8m", 1, 2.0),
+                               Attack("A5", "offset_20_70m", 1, 0.5), Attack("mine", "", 1, 3.0),
+                               Attack("A5", "lateral_8m", 2, std::nullopt)});
+  ASSERT_EQ(s.attacks.size(), 3u);
+  EXPECT_EQ(s.attacks[0].id, "A5");
+  EXPECT_EQ(s.attacks[1].id, "A11");
+  EXPECT_EQ(s.attacks[2].id, "mine");
+  EXPECT_TRUE(s.attacks[2].variants.empty());
+  EXPECT_EQ(s.attacks[0].attack.runs, 3);
+  EXPECT_NEAR(*s.attacks[0].attack.withdraw_rate(), 2.0 / 3.0, 1e-12);
+  ASSERT_EQ(s.attacks[0].variants.size(), 2u);
+  EXPECT_EQ(s.attacks[0].variants[0].name(), "A5/lateral_8m");
+  EXPECT_EQ(s.attacks[0].variants[0].attack.runs, 2);
+  EXPECT_EQ(s.runs, 5);
+}
+
+TEST(Summary, ComparesWithTheSameRunWithoutAttack) {
+  RunRecord plain = Record(Kind::kPlain, "", "", 1);
+  RunRecord changed = Attack("A22", "x40", 1, 0.1);
+  changed.local_digest = "other";
+  changed.ours.honest.held_s = 49.0;
+  const RunRecord alone = Attack("A22", "x40", 2, 0.1);  // Nothing to compare with.
+  const Summary s = Summarise({plain, changed, alone});
+  EXPECT_EQ(s.attacks[0].digests_compared, 1);
+  EXPECT_EQ(s.attacks[0].digests_changed, 1);
+  EXPECT_NEAR(*s.attacks[0].validated_ratio, 0.5, 1e-12);
+  const auto targets = JudgeTargets(s);
+  EXPECT_FALSE(Find(targets, "LOCAL digest")->is_met());
+  EXPECT_FALSE(Find(targets, "A22")->is_met());
+}
+
+TEST(Summary, TheScoreIsTheWeakestAttacksAndA28IsNone) {
+  const Summary s =
+      Summarise({Attack("A5", "offset_20_70m", 1, 0.0), Attack("A8", "jump_10m", 1, 5.0),
+                 Attack("A28", "2m", 1, std::nullopt), Record(Kind::kHonest, "H1", "", 1)});
+  EXPECT_EQ(s.weakest, "A8");
+  EXPECT_NEAR(*s.score, 100.0 * (0.4 + 0.3 * std::exp(-1.0) + 0.3) * 0.98, 1e-9);
+}
+
+TEST(Targets, AreTheWorstVariantsAndNeverMeansMissed) {
+  const Summary s = Summarise(
+      {Attack("A5", "offset_20_70m", 1, 1.0), Attack("A5", "veremi_250_150", 1, std::nullopt),
+       Attack("A5", "lateral_3m", 1, std::nullopt), Attack("A6", "random_300m", 1, 1.2)});
+  const auto targets = JudgeTargets(s);
+  const Target* offset = Find(targets, "met p95 [s], A5");
+  ASSERT_NE(offset, nullptr);
+  EXPECT_TRUE(offset->is_censored);
+  EXPECT_FALSE(offset->is_met());
+  EXPECT_EQ(offset->worst, "A5/veremi_250_150");
+  const Target* random = Find(targets, "met p95 [s], A6");
+  EXPECT_EQ(random->value, 1.2);
+  EXPECT_TRUE(random->is_met());
+  EXPECT_TRUE(Find(targets, "F1, A6")->is_met());  // 0.995.
+  EXPECT_EQ(Find(targets, "A9"), nullptr);         // Not tried.
+  EXPECT_FALSE(Find(targets, "LOCAL")->value);     // Nothing to compare with.
+}
+
+TEST(Targets, HonestConditionsHaveTheirs) {
+  RunRecord h1 = Record(Kind::kHonest, "H1", "", 1);
+  RunRecord h4 = Record(Kind::kHonest, "H4", "", 1);
+  h4.ours.honest.held_s = 85.0;
+  RunRecord h3 = Record(Kind::kHonest, "H3", "", 1);
+  h3.ours.honest.accusations = 1;
+  const auto targets = JudgeTargets(Summarise({h1, h3, h4}));
+  EXPECT_NEAR(*Find(targets, "accusations per honest")->value, 1.0 / 0.3, 1e-9);
+  EXPECT_FALSE(Find(targets, "accusations per honest")->is_met());
+  EXPECT_NEAR(*Find(targets, "per vehicle-hour, H3")->value, 10.0, 1e-9);
+  EXPECT_TRUE(Find(targets, "each condition but")->is_met());
+  EXPECT_EQ(Find(targets, "validated share, H4")->value, 0.85);
+  EXPECT_TRUE(Find(targets, "validated share, H4")->is_met());
+  EXPECT_TRUE(Find(targets, "survived")->is_met());
+}
+
+TEST(SummaryJson, HasTheFieldsThatWereAgreed) {
+  const auto json = nlohmann::json::parse(SummaryJson(
+      Summarise({Attack("A5", "lateral_3m", 1, std::nullopt), Attack("A5", "lateral_8m", 1, 1.0),
+                 Record(Kind::kHonest, "H1", "", 1)})));
+  const auto& attack = json.at("attacks").at(0);
+  for (const char* key :
+       {"id", "runs", "withdraw_rate", "withdraw_p50_s", "withdraw_p95_s", "accuse_rate",
+        "precision", "recall", "f1", "f1_low", "f1_high", "exposure_max_m", "ghost_publications"}) {
+    EXPECT_TRUE(attack.contains(key)) << key;
+    EXPECT_TRUE(attack.at("variants").at(0).contains(key) || std::string(key) == "id") << key;
+  }
+  EXPECT_EQ(attack.at("withdraw_p50_s"), 1.0);
+  EXPECT_TRUE(attack.at("withdraw_p95_s").is_null());
+  EXPECT_TRUE(attack.at("withdraw_p95_censored"));
+  const auto& honest = json.at("honest").at(0);
+  for (const char* key : {"id", "vehicle_hours", "accusations_per_vehicle_hour", "withdrawn_share",
+                          "validated_share", "bridging_survival"}) {
+    EXPECT_TRUE(honest.contains(key)) << key;
+  }
+  EXPECT_TRUE(json.contains("score"));
+}
+
+TEST(SummaryTable, NamesWhatIsMissed) {
+  const std::string table = SummaryTable(Summarise({Attack("A6", "random_35m", 1, 4.0)}), true);
+  EXPECT_THAT(table, HasSubstr("MISSED"));
+  EXPECT_THAT(table, HasSubstr("4.00 (A6/random_35m)"));
+  EXPECT_THAT(table, HasSubstr("against the field"));
+}
+
+}  // namespace
+}  // namespace v2vouch::campaign
