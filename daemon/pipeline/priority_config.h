@@ -58,9 +58,10 @@ struct PriorityConfig {
   PriorityFilterConfig filter;
   BridgeConfig bridge;
   IdentityChangeConfig identity_change;
-  double interest_m = 30.0;  ///< Senders are followed within this distance of a LOCAL track.
-  double contact_s = 5.0;    ///< A sender silent for so long is forgotten.
-  int max_senders = 128;     ///< Followed at a time.
+  double interest_m = 30.0;   ///< Senders are followed within this distance of a LOCAL track.
+  double contact_s = 5.0;     ///< A sender silent for so long is forgotten.
+  int max_senders = 128;      ///< Followed at a time.
+  double turnover_hz = 40.0;  ///< Others that may take their places, once that many are followed.
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -76,6 +77,7 @@ struct PriorityConfig {
     a.Field("interest_m", interest_m, {.above = 1.0, .at_most = 500.0});
     a.Field("contact_s", contact_s, {.above = 0.5, .at_most = 60.0});
     a.Field("max_senders", max_senders, {.at_least = 4, .at_most = 1024});
+    a.Field("turnover_hz", turnover_hz, {.above = 0.0, .at_most = 1e5});
   }
 };
 

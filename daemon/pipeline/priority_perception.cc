@@ -11,6 +11,7 @@ namespace {
 // Ego GNSS moving the alignment by more than this at once changes every residual; no sender's
 // doing.
 constexpr double kAlignmentStep_m = 2.0;
+constexpr double kTurns_s = 0.5;       // So many seconds' turns may be saved up.
 constexpr double kHeightMemory = 0.1;  // Weight of a new height in the smoothed one.
 
 Eigen::Vector2d VelocityOf(const ClaimInOdometry& claim) {
@@ -249,6 +250,8 @@ PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
           return is_near(vehicle.filter.mean().head<2>());
         });
     if (!is_of_interest) return nullptr;
+    const bool is_full = links_.size() >= static_cast<std::size_t>(config.max_senders);
+    if (is_full && !TakeTurn(here.stamp)) return nullptr;
     const Tombstones::Stone* own = tombstones_.Find(claim.sender);
     std::optional<Tombstones::Stone> stone;
     if (own != nullptr) {
@@ -258,9 +261,7 @@ PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
                                   here.p_O, VelocityOf(here), config.trust.tombstone);
     }
     const bool is_penalised = stone && stone->penalty.state != TrustState::kNone;
-    if (links_.size() >= static_cast<std::size_t>(config.max_senders) && !MakeRoom(is_penalised)) {
-      return nullptr;
-    }
+    if (is_full && !MakeRoom(is_penalised)) return nullptr;
     const auto at = std::ranges::lower_bound(links_, claim.sender, {}, &Link::sender);
     link = &*links_.insert(at, Link{});
     link->sender = claim.sender;
@@ -276,6 +277,22 @@ PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
   link->is_accuracy_poor = claim.accuracy_is_poor;
   if (claim.has_elevation) link->height_m = Smoothed(link->height_m, claim.height_m);
   return link;
+}
+
+// Where more senders speak near by than can be followed, each keeps its place long enough to be
+// judged: were everyone let in at once, nobody's second message would find the first's record.
+bool PriorityPerception::TakeTurn(Timestamp now) {
+  const double rate_hz = settings_->priority.turnover_hz;
+  if (turns_refilled_) {
+    const double since_s = std::max(0.0, ToSeconds(now - *turns_refilled_));
+    turns_ = std::min(kTurns_s * rate_hz, turns_ + since_s * rate_hz);
+  } else {
+    turns_ = kTurns_s * rate_hz;
+  }
+  turns_refilled_ = now;
+  if (turns_ < 1.0) return false;
+  turns_ -= 1.0;
+  return true;
 }
 
 // Room is made by whom the least is lost with: the penalised, whose stones remember them, then

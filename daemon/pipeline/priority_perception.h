@@ -112,6 +112,7 @@ class PriorityPerception {
 
   Link* FindLink(SenderId sender);
   Link* FollowSender(const Claim& claim, const ClaimInOdometry& here, const EgoState& ego);
+  bool TakeTurn(Timestamp now);
   bool MakeRoom(bool for_penalised);
   Sensed* FindSensed(std::uint64_t local_id);
   PriorityVehicle* VehicleOf(SenderId sender);
@@ -158,7 +159,9 @@ class PriorityPerception {
   std::shared_ptr<const Settings> settings_;
   Alignment alignment_;
   std::optional<double> ego_height_m_;
-  std::vector<Link> links_;     // By sender.
+  std::vector<Link> links_;  // By sender.
+  double turns_ = 0.0;       // Newcomers that may take another's place.
+  std::optional<Timestamp> turns_refilled_;
   std::vector<Sensed> sensed_;  // By LOCAL id; all tracks of the newest frame.
   Timestamp sensed_stamp_{};
   std::vector<SenderResidual> residual_means_;              // Work space of JudgeCommonMode().

@@ -88,7 +88,7 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
       return Reason::kSenderNumerics;
     }
   } else {
-    if (const auto refusal = MakeRoom(bsm.stamp)) return *refusal;
+    if (const auto refusal = MakeRoom(bsm.sender, bsm.stamp)) return *refusal;
     index = IndexOf(bsm.sender);
     const auto at = static_cast<std::ptrdiff_t>(index);
     senders_.insert(senders_.begin() + at, StartSender(bsm, claim));
@@ -117,12 +117,14 @@ void BsmIntake::Contest(std::uint16_t id_tag, std::size_t copy) {
   }
 }
 
-std::optional<Reason> BsmIntake::MakeRoom(Timestamp now) {
+std::optional<Reason> BsmIntake::MakeRoom(SenderId newcomer, Timestamp now) {
   const auto capacity = static_cast<std::size_t>(config_.max_senders);
-  if (2 * senders_.size() >= capacity) {
-    if (new_tokens_ < 1.0) return Reason::kBsmTableFull;
-    new_tokens_ -= 1.0;
+  const bool has_knocked = knocks_.Knock(newcomer, now);
+  if (new_tokens_ < 0.5 * config_.max_new_senders_per_s && !has_knocked) {
+    return Reason::kBsmTableFull;
   }
+  if (2 * senders_.size() >= capacity && new_tokens_ < 1.0) return Reason::kBsmTableFull;
+  new_tokens_ = std::max(0.0, new_tokens_ - 1.0);
   if (senders_.size() < capacity) return std::nullopt;
   const auto stalest =
       std::min_element(accounts_.begin(), accounts_.end(), [](const Account& a, const Account& b) {

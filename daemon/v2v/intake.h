@@ -12,6 +12,7 @@
 #include "daemon/data/input.h"
 #include "daemon/data/track.h"
 #include "daemon/geodesy/ecef.h"
+#include "daemon/v2v/knock_memory.h"
 #include "daemon/v2v/message_check_config.h"
 #include "daemon/v2v/repeat_memory.h"
 #include "daemon/v2v/sender_checks.h"
@@ -23,7 +24,7 @@ struct IntakeConfig {
   double max_rate_hz = 12.0;  ///< Sustained messages per sender; bursts of `burst`.
   double burst = 10.0;
   double max_total_rate_hz = 15000.0;
-  int max_new_senders_per_s = 64;  ///< New identities admitted per second once half full.
+  int max_new_senders_per_s = 64;  ///< New identities admitted per second.
   double max_age_s = 1.5;          ///< Older content is refused.
   double max_future_s = 0.3;
   double default_age_s = 0.15;     ///< Where neither generation time nor secMark is there.
@@ -105,8 +106,11 @@ struct SenderTrack {
 /// - heard before (same id, msgCnt, secMark, place): kBsmRepeat
 /// - rates, of the sender and of all: kBsmRate. Once half of the total budget is spent, only known
 ///   senders are served
-/// - new identities beyond their budget, or no room: kBsmTableFull. A full table gives up the
-///   sender unheard for longest, never a pinned one, never one heard in the last second
+/// - new identities beyond their budget, or no room: kBsmTableFull. Once half of that budget is
+///   spent a newcomer must have knocked before (KnockMemory), so that a flood of identities that
+///   speak once does not keep others out; once the table is half full, the budget binds. A full
+///   table gives up the sender unheard for longest, never a pinned one, never one heard in the last
+///   second
 ///
 /// An accepted claim carries the gravest that the sender's own messages have against it
 /// (SenderChecks), refused ones included.
@@ -142,7 +146,7 @@ class BsmIntake {
 
   [[nodiscard]] std::size_t IndexOf(SenderId sender) const;
   [[nodiscard]] bool Holds(std::size_t index, SenderId sender) const;
-  [[nodiscard]] std::optional<Reason> MakeRoom(Timestamp now);
+  [[nodiscard]] std::optional<Reason> MakeRoom(SenderId newcomer, Timestamp now);
   void Remove(std::size_t index);
   void Contest(std::uint16_t id_tag, std::size_t copy);
 
@@ -152,6 +156,7 @@ class BsmIntake {
   std::vector<SenderChecks> checks_;  // By slot: they stay where they are when senders come and go.
   std::vector<std::uint32_t> free_slots_;
   RepeatMemory repeats_;
+  KnockMemory knocks_;
   double total_tokens_ = 0.0;
   double new_tokens_ = 0.0;
   std::optional<Timestamp> refilled_;

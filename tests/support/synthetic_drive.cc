@@ -95,7 +95,12 @@ CameraDetections MakeBoxes(const SyntheticDrive& drive, double t, std::int64_t s
   return boxes;
 }
 
-Bsm MakeBsm(const SyntheticCar& car, const LocalPlane& plane, double t, int count, Random& random) {
+}  // namespace
+
+Timestamp DriveStart() { return FromMicros(1'700'000'000'000'000); }
+
+Bsm SpokenAt(const SyntheticCar& car, double t, int count, Random& random) {
+  const LocalPlane plane(kOrigin);
   const Place centre = At(car, t - kClaimAge_s);
   const Wgs84 position = plane.ToGeodetic(
       {Eigen::Vector3d(centre.x_m + 0.3 * random.Normal(),
@@ -121,10 +126,6 @@ Bsm MakeBsm(const SyntheticCar& car, const LocalPlane& plane, double t, int coun
   bsm.width_m = 1.8;
   return bsm;
 }
-
-}  // namespace
-
-Timestamp DriveStart() { return FromMicros(1'700'000'000'000'000); }
 
 std::vector<Input> MakeInputs(const SyntheticDrive& drive) {
   std::vector<Input> inputs;
@@ -180,7 +181,7 @@ std::vector<Input> MakeInputs(const SyntheticDrive& drive) {
     Random random = Random::ForSubject(drive.seed, 1000 + car.sender);
     for (int i = 2; i < steps(kSlowPeriod_s); ++i) {
       const double t = kSlowPeriod_s * i + 0.001 * static_cast<double>(car.sender % 97);
-      inputs.emplace_back(MakeBsm(car, plane, t, i, random));
+      inputs.emplace_back(SpokenAt(car, t, i, random));
     }
   }
   std::stable_sort(inputs.begin(), inputs.end(), [](const Input& a, const Input& b) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "daemon/base/random.h"
 #include "daemon/data/input.h"
 #include "daemon/data/vehicle.h"
 
@@ -33,6 +34,9 @@ struct SyntheticDrive {
 /// All inputs of a drive, ordered by stamp. BSMs are stamped with their reception 0.1 s after the
 /// content.
 std::vector<Input> MakeInputs(const SyntheticDrive& drive);
+
+/// What is received of a car `t` seconds after the start.
+Bsm SpokenAt(const SyntheticCar& car, double t, int count, Random& random);
 
 /// Time of the start of every synthetic drive.
 Timestamp DriveStart();

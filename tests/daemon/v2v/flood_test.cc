@@ -77,6 +77,37 @@ TEST(Flood, RandomIdentitiesNeitherGrowMemoryNorSilenceTheHonestCar) {
             << " us per message, at most " << most << " senders\n";
 }
 
+// Amid them, a car that was never heard before.
+TEST(Flood, RandomIdentitiesDoNotKeepANewcomerOut) {
+  BsmIntake intake{IntakeConfig{}};
+  Random random(3);
+  const EgoPlace ego = EgoAtCrossroads();
+  std::vector<TalkingCar> newcomers(20);
+  std::vector<double> waited_s(newcomers.size(), 100.0);
+  for (int i = 0; i < 40'000; ++i) {
+    TalkingCar ghost;
+    ghost.id = static_cast<SenderId>(random.Bits());
+    ghost.time_s = 0.0002 * i;
+    ghost.east_m = random.Uniform(-900.0, 900.0);
+    ghost.north_m = random.Uniform(-400.0, 400.0);
+    intake.Expire(ghost.Say().stamp);
+    (void)intake.Accept(ghost.Say(), ego);
+    // One newcomer every 0.2 s from 3 s on, each at 10 Hz.
+    for (std::size_t k = 0; k < newcomers.size(); ++k) {
+      const int since = i - 15'000 - 1000 * static_cast<int>(k);
+      if (since < 0 || since % 500 != 0) continue;
+      TalkingCar& car = newcomers[k];
+      car.id = static_cast<SenderId>(77 + k);
+      car.north_m = 20.0 + 10.0 * static_cast<double>(k);
+      car.time_s = ghost.time_s - 0.1;
+      car.Drive(0.1);
+      const bool is_taken{intake.Accept(car.Say(), ego)};
+      if (is_taken) waited_s[k] = std::min(waited_s[k], 0.0002 * since);
+    }
+  }
+  for (const double waited : waited_s) EXPECT_LE(waited, 0.35);
+}
+
 // 1000 senders at 10 Hz: the design load, in the steady state.
 TEST(Flood, AThousandSendersCostNoAllocation) {
   BsmIntake intake{IntakeConfig{.max_new_senders_per_s = 2000}};
