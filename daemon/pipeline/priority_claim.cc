@@ -181,12 +181,11 @@ void PriorityPerception::CompareWithSensors(Link& link, PriorityVehicle* vehicle
   } else if (const PairTable::Pair* pair = pairs_.AssignedTo(link.sender)) {
     local_id = pair->track_id;
   }
-  // While the sensors have but a part of it they drag their track along the part.
-  const Sensed* sensed = FindSensed(local_id);
-  if (sensed != nullptr && sensed->is_partial && link.trust.is_relied_on()) return;
   const auto state = SensedAt(local_id, here.stamp);
   if (!state) return;
   CoObservation observation = ForTrust(here, *state);
+  const Sensed* sensed = FindSensed(local_id);
+  observation.is_partial = sensed != nullptr && sensed->is_partial && link.trust.is_relied_on();
   observation.is_ego_shifted = IsShifted(here.stamp);
   observation.shift_O = common_.shift_O();
   const bool may_accuse = MayAccuse(here.stamp) && common_.HasWitnessAgainst(link.sender);

@@ -53,6 +53,7 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
     history_ = {};
     return false;
   }
+  if (observation.is_partial) return true;
   std::optional<Finding> gravest;
   for (const auto check : {CheckLevel, CheckDrift, CheckVelocity, CheckAcceleration}) {
     const auto finding = check(history_, observation, config);
