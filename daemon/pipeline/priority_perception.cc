@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "daemon/trust/standard_classes.h"
+
 namespace v2vouch {
 namespace {
 
@@ -321,10 +323,10 @@ bool PriorityPerception::MakeRoom(bool for_penalised) {
   return true;
 }
 
-void PriorityPerception::EndVehicle(PriorityVehicle& vehicle, Timestamp stamp) {
+void PriorityPerception::EndVehicle(PriorityVehicle& vehicle) {
   vehicle.id = 0;
   pairs_.SetIncumbent(vehicle.sender, std::nullopt);
-  if (Link* link = FindLink(vehicle.sender)) link->trust.Release(stamp);
+  if (Link* link = FindLink(vehicle.sender)) link->trust.Release();
 }
 
 void PriorityPerception::DropEnded() {
@@ -340,10 +342,14 @@ void PriorityPerception::Report(Link& link, Timestamp stamp, Outputs& outputs) {
   report.certificate = link.certificate;
   report.check = judgement->finding.check;
   report.verdict = judgement->verdict;
+  if (const auto standard = StandardClassOf(report.check)) {
+    report.etsi_class = standard->etsi_class;
+    report.is_j3287 = standard->is_j3287;
+  }
   report.evidence = {{judgement->finding.quantity, judgement->finding.value},
                      {"limit", judgement->finding.limit}};
   outputs.reports.push_back(std::move(report));
-  if (PriorityVehicle* vehicle = VehicleOf(link.sender)) EndVehicle(*vehicle, stamp);
+  if (PriorityVehicle* vehicle = VehicleOf(link.sender)) EndVehicle(*vehicle);
 }
 
 }  // namespace v2vouch

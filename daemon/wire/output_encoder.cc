@@ -132,7 +132,8 @@ void EncodeReport(const MisbehaviorReport& report, std::vector<std::uint8_t>& by
   std::copy(report.certificate.begin(), report.certificate.end(), to.certificate_digest);
   to.check = Name(report.check);
   to.verdict = static_cast<std::int8_t>(report.verdict);
-  to.etsi_class = misbehavior_report_t::ETSI_NONE;
+  to.etsi_class = report.etsi_class;
+  to.is_j3287 = report.is_j3287 ? 1 : 0;
   for (const Evidence& evidence : report.evidence) {
     evidence_t figure{};
     figure.name = Name(evidence.name);

@@ -426,6 +426,13 @@ TEST(OutputEncoder, OurOwnDecoderTakesWhatWeWrite) {
   report.evidence = {{"residual_m", 3.0}};
   EncodeReport(report, bytes);
   EXPECT_EQ(Decode<misbehavior_report_t>(bytes)->evidence[0].value, 3.0);
+  EXPECT_EQ(Decode<misbehavior_report_t>(bytes)->etsi_class, misbehavior_report_t::ETSI_NONE);
+  EXPECT_EQ(Decode<misbehavior_report_t>(bytes)->is_j3287, 0);
+  report.etsi_class = 4;
+  report.is_j3287 = true;
+  EncodeReport(report, bytes);
+  EXPECT_EQ(Decode<misbehavior_report_t>(bytes)->etsi_class, misbehavior_report_t::ETSI_SPEED);
+  EXPECT_EQ(Decode<misbehavior_report_t>(bytes)->is_j3287, 1);
   EncodeVerdict({FromMicros(5), 6, 0x01020304, TrustState::kNone, Reason::kBsmStale}, bytes);
   EXPECT_EQ(Decode<bsm_verdict_t>(bytes)->refusal, "bsm_stale");
   EncodeVerdict({FromMicros(5), 6, 0x01020304, TrustState::kSuspect, std::nullopt}, bytes);
