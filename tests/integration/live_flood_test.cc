@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// v2vouchd over UDP with its radio flooded: BSMs on a port of their own, so that own sensors share
+// no queue with them. Bounded: five seconds, 20 000 messages.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "daemon/base/random.h"
+#include "daemon/io/event_log.h"
+#include "daemon/io/lcm_bus.h"
+#include "daemon/wire/codec.h"
+#include "tests/integration/program.h"
+#include "tests/support/flood.h"
+#include "tests/support/wire_drive.h"
+#include "v2vouch/daemon_status_t.hpp"
+#include "v2vouch/track_list_t.hpp"
+
+namespace v2vouch {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using testing::Eventually;
+using testing::Program;
+using testing::WireMessage;
+
+constexpr double kFlood_s = 1.0;
+constexpr double kFloodRate_hz = 5000.0;
+
+// The environment's URL with the next port.
+std::string NextPort(std::string url) {
+  const auto colon = url.find(':', url.find("//") + 2);
+  if (colon == std::string::npos) return "";
+  const auto end = url.find('?', colon);
+  const int port = std::atoi(url.substr(colon + 1).c_str());
+  return url.substr(0, colon + 1) + std::to_string(port + 1) +
+         (end == std::string::npos ? "" : url.substr(end));
+}
+
+// Four in five random identities, one in five cut short or filled with noise.
+std::vector<WireMessage> FloodMessages(const testing::SyntheticDrive& drive) {
+  std::vector<WireMessage> flood = testing::EncodeInputs(
+      testing::FloodOf(testing::FloodKind::kRandom, kFloodRate_hz, kFlood_s, drive),
+      VehicleConfig{});
+  Random random(9);
+  for (std::size_t i = 0; i < flood.size(); i += 5) {
+    std::vector<std::uint8_t>& bytes = flood[i].bytes;
+    if (i % 2 == 0) {
+      bytes.resize(static_cast<std::size_t>(random.Bits() % bytes.size()));
+    } else {
+      for (std::size_t k = 8; k < bytes.size(); ++k) {
+        bytes[k] = static_cast<std::uint8_t>(random.Bits());
+      }
+    }
+  }
+  return flood;
+}
+
+TEST(LiveFlood, DelaysNoListAndLosesNoOwnMessage) {
+  if (std::getenv("V2VOUCH_PRIVATE_LCM") == nullptr || std::getenv("V2VOUCH_BIN") == nullptr) {
+    GTEST_SKIP() << "SKIPPED: not inside scripts/with_private_lcm";
+  }
+  const std::string bin = std::getenv("V2VOUCH_BIN");
+  const std::string v2v_url = NextPort(std::getenv("LCM_DEFAULT_URL"));
+  ASSERT_FALSE(v2v_url.empty());
+  std::string pattern = (fs::temp_directory_path() / "live_flood_XXXXXX").string();
+  const fs::path folder = mkdtemp(pattern.data());
+  const auto path = [&folder](const char* name) { return (folder / name).string(); };
+
+  testing::SyntheticDrive drive;
+  drive.duration_s = 5.0;
+  drive.cars.push_back({.x_m = 30.0, .y_m = 0.0, .speed_mps = 9.0, .sender = 0x11});
+  std::vector<WireMessage> messages =
+      testing::EncodeInputs(testing::MakeInputs(drive), VehicleConfig{});
+
+  // What LOCAL must be: the same drive offline, without the flood.
+  std::string error;
+  {
+    const auto writer = LogWriter::Create(path("drive.lcm"), error);
+    ASSERT_TRUE(writer) << error;
+    for (const WireMessage& message : messages) {
+      writer->Write(message.received, message.channel, message.bytes);
+    }
+    ASSERT_TRUE(writer->Close(error)) << error;
+  }
+  Program replay(
+      {bin + "/v2vouch-replay", path("drive.lcm"), "--out", path("replay.lcm"), "--json"},
+      path("replay.json"));
+  ASSERT_EQ(replay.Wait(30s), 0) << replay.Output();
+  const auto offline = nlohmann::json::parse(replay.Output());
+
+  const std::vector<WireMessage> flood = FloodMessages(drive);
+  messages.insert(messages.end(), flood.begin(), flood.end());
+  std::ranges::stable_sort(messages, {}, &WireMessage::received);
+
+  Program daemon({bin + "/v2vouchd", "--v2v-lcm-url", v2v_url}, path("daemon.txt"));
+  ASSERT_TRUE(
+      Eventually([&] { return daemon.Output().find("event=started") != std::string::npos; }, 10s))
+      << daemon.Output();
+  const auto own_bus = LcmBus::Open("");
+  const auto v2v_bus = LcmBus::Open(v2v_url);
+  const auto listener = LcmBus::Open("");
+  ASSERT_TRUE(own_bus && v2v_bus && listener);
+  daemon_status_t status{};
+  int lists = 0;
+  int priority_lists = 0;
+  listener->Subscribe("V2VOUCH_STATUS",
+                      [&](std::span<const std::uint8_t> bytes, std::size_t, Timestamp) {
+                        if (auto heard = wire::Decode<daemon_status_t>(bytes)) status = *heard;
+                      });
+  listener->Subscribe("TRACKS_LOCAL",
+                      [&](std::span<const std::uint8_t> bytes, std::size_t, Timestamp) {
+                        const auto list = wire::Decode<track_list_t>(bytes);
+                        lists += list && list->stale == 0 ? 1 : 0;
+                      });
+  listener->Subscribe("TRACKS_PRIORITY",
+                      [&](std::span<const std::uint8_t> bytes, std::size_t, Timestamp) {
+                        const auto list = wire::Decode<track_list_t>(bytes);
+                        priority_lists += list && list->num_tracks > 0 ? 1 : 0;
+                      });
+  std::atomic<bool> is_over = false;
+  std::thread listening([&] {
+    while (!is_over) listener->Handle(20);
+  });
+
+  const auto start = std::chrono::steady_clock::now();
+  for (const WireMessage& message : messages) {
+    std::this_thread::sleep_until(start + (message.received - testing::DriveStart()));
+    (message.channel == "BSM" ? *v2v_bus : *own_bus).Publish(message.channel, message.bytes);
+  }
+  std::this_thread::sleep_for(1500ms);  // What is still on its way, and one more status.
+  is_over = true;
+  listening.join();
+  daemon.Signal(SIGTERM);
+  EXPECT_EQ(daemon.Wait(5s), 0) << daemon.Output();
+  const std::string words = daemon.Output();
+
+  EXPECT_NE(words.find("digest_local=" + offline["digest_local"].get<std::string>()),
+            std::string::npos)
+      << words;
+  EXPECT_EQ(lists, offline["lists"].get<int>());
+  EXPECT_GT(priority_lists, 0);
+  EXPECT_EQ(status.kernel_drops, 0);
+  EXPECT_EQ(status.queue_drops_own, 0);
+  std::map<std::string, std::int64_t> refusals;
+  for (const count_t& refusal : status.refusals) refusals[refusal.name] = refusal.count;
+  EXPECT_GT(refusals["bsm_table_full"], 10'000) << ::testing::PrintToString(refusals);
+  EXPECT_LT(status.v2v_senders, 2048);
+  for (const input_status_t& input : status.inputs) {
+    EXPECT_TRUE(input.channel == "BSM" || input.gaps == 0) << input.channel;
+  }
+  for (const stage_latency_t& latency : status.latencies) {
+    std::cout << latency.stage << ": p50 " << latency.p50_us << " us, p99 " << latency.p99_us
+              << " us, most " << latency.max_us << " us\n";
+  }
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace v2vouch
