@@ -32,7 +32,10 @@ std::optional<Finding> SenderChecks::Judge(const Claim& claim, const SenderTrack
   const double dt_s = last_ ? ToSeconds(claim.received - last_->received) : 0.0;
   implausible_.OnMessage(false);
   add(implausible_.Judge(config));
-  add(JudgeMotion(claim, track, config));
+  auto motion = JudgeMotion(claim, track, config);
+  // A unit that says itself that it is lost does not lie about its place; it is of no use.
+  if (motion && claim.accuracy_is_poor) motion->severity = Verdict::kWithdraw;
+  add(motion);
   add(innovation_.Judge(track.latest_nis, track.nis_freedom, dt_s, config));
   add(size_.Judge(claim.length_m, claim.width_m, config));
   add(delay_.Judge(claim.age_s, config));
