@@ -29,7 +29,7 @@ struct AssociationConfig {
   double speed_background_mps = 20.0;  ///< Spread of their speeds; headings are uniform.
   double forgetting_s = 10.0;          ///< Evidence fades with this time constant.
   double max_level = 3.0;   ///< Of the learnt bias (2 dof, 0.95): beyond, nothing is validated.
-  double min_margin = 4.0;  ///< Log-likelihood by which the second best must be beaten.
+  double min_margin = 3.0;  ///< Log-likelihood by which the second best must be beaten.
   double incumbent_bonus = 9.2;          ///< Head start of a validated pair in the assignment.
   double max_height_difference_m = 4.0;  ///< Farther apart in known elevation: never a pair.
   double pair_timeout_s = 2.0;           ///< A pair not observed for this long is forgotten.

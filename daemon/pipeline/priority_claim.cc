@@ -181,18 +181,17 @@ void PriorityPerception::CompareWithSensors(Link& link, PriorityVehicle* vehicle
   } else if (const PairTable::Pair* pair = pairs_.AssignedTo(link.sender)) {
     local_id = pair->track_id;
   }
-  // While the sensors have but a part of it they drag their track along the part.
-  const Sensed* sensed = FindSensed(local_id);
-  if (sensed != nullptr && sensed->is_partial && link.trust.is_relied_on()) return;
   const auto state = SensedAt(local_id, here.stamp);
   if (!state) return;
   CoObservation observation = ForTrust(here, *state);
+  const Sensed* sensed = FindSensed(local_id);
+  observation.is_partial = sensed != nullptr && sensed->is_partial && link.trust.is_relied_on();
   observation.is_ego_shifted = IsShifted(here.stamp);
   observation.shift_O = common_.shift_O();
   const bool may_accuse = MayAccuse(here.stamp) && common_.HasWitnessAgainst(link.sender);
   if (!link.trust.OnCoObservation(observation, may_accuse, config.trust)) {
     pairs_.DropSender(link.sender);
-    if (vehicle != nullptr) EndVehicle(*vehicle);
+    if (vehicle != nullptr) EndVehicle(*vehicle, here.stamp);
     return;
   }
   if (vehicle == nullptr || !link.trust.is_relied_on() || alignment_.is_suspect()) return;
@@ -223,20 +222,20 @@ void PriorityPerception::UseClaim(Link& link, PriorityVehicle& vehicle,
     // vehicle has braked or turned. Where it can be is bounded all the same.
     vehicle.filter.DoubtVelocity();
     vehicle.misfits_in_a_row = 0;
-    if (++vehicle.velocity_doubts > kMostVelocityDoubts) return EndVehicle(vehicle);
+    if (++vehicle.velocity_doubts > kMostVelocityDoubts) return EndVehicle(vehicle, here.stamp);
   }
   // While a sender's messages continue each other, what does not fit may be what we carried: the
   // last look had but a part of the vehicle, or the vehicle has turned. Then the bridge just ends.
   const bool is_own_break = link.breaks > 0;
   const Eigen::Vector2d p_O = vehicle.filter.mean().head<2>();
   if (vehicle.misfits_in_a_row >= config.bridge.max_misfits) {
-    if (!is_own_break) return EndVehicle(vehicle);
+    if (!is_own_break) return EndVehicle(vehicle, here.stamp);
     link.trust.OnFinding(here.stamp,
                          {"bridge_misfit", Verdict::kWithdraw, "position_nis", fit.position_nis,
                           config.filter.position_gate},
                          MayAccuse(here.stamp));
   } else if (!vehicle.CanReach(p_O, here.stamp, config.bridge)) {
-    if (!is_own_break) return EndVehicle(vehicle);
+    if (!is_own_break) return EndVehicle(vehicle, here.stamp);
     link.trust.OnFinding(here.stamp,
                          {"out_of_reach", Verdict::kWithdraw, "distance_m",
                           (p_O - vehicle.coast.state().mean.head<2>()).norm(), 0.0},
@@ -254,7 +253,8 @@ void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
                                       sensed->track.last_camera.value_or(Timestamp{}));
   const bool is_seen = ToSeconds(here.stamp - last_hit) <= config.bridge.support_s;
   const PairEvidence& evidence = pair->evidence;
-  if (!link.trust.TryValidate({.co_observations = evidence.observations(),
+  if (!link.trust.TryValidate({.stamp = here.stamp,
+                               .co_observations = evidence.observations(),
                                .span_s = evidence.span_s(),
                                .is_nis_consistent = evidence.is_nis_consistent(),
                                .is_level_plausible = evidence.level() <= config.safe.max_level,

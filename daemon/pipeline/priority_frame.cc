@@ -119,7 +119,7 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
                                      const VisibilityMap& map, Outputs& outputs) {
   const PriorityConfig& config = settings_->priority;
   Link* link = FindLink(vehicle.sender);
-  if (link == nullptr) return EndVehicle(vehicle);
+  if (link == nullptr) return EndVehicle(vehicle, frame.stamp);
   vehicle.PredictTo(frame.stamp, config.filter);
 
   const Sensed* sensed = FindSensed(vehicle.local_id);
@@ -138,12 +138,12 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
   }
   if (!vehicle.filter.is_healthy()) {
     outputs.Refuse(Reason::kTrackNumerics, frame.stamp);
-    return EndVehicle(vehicle);
+    return EndVehicle(vehicle, frame.stamp);
   }
   const double silence_s = ToSeconds(frame.stamp - vehicle.last_v2v);
   if (vehicle.is_supported) {
     vehicle.visibility = Visibility::kVisible;
-    if (silence_s > config.bridge.max_silence_s) EndVehicle(vehicle);
+    if (silence_s > config.bridge.max_silence_s) EndVehicle(vehicle, frame.stamp);
     return;
   }
 
@@ -161,7 +161,7 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
       silence_s >= config.bridge.max_gap_s ||
       vehicle.BudgetLeft_s(frame.stamp, config.bridge) <= 0.0 ||
       vehicle.filter.position_sigma_m() >= config.bridge.max_sigma_m) {
-    EndVehicle(vehicle);
+    EndVehicle(vehicle, frame.stamp);
   }
 }
 

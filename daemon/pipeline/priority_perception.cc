@@ -323,10 +323,10 @@ bool PriorityPerception::MakeRoom(bool for_penalised) {
   return true;
 }
 
-void PriorityPerception::EndVehicle(PriorityVehicle& vehicle) {
+void PriorityPerception::EndVehicle(PriorityVehicle& vehicle, Timestamp stamp) {
   vehicle.id = 0;
   pairs_.SetIncumbent(vehicle.sender, std::nullopt);
-  if (Link* link = FindLink(vehicle.sender)) link->trust.Release();
+  if (Link* link = FindLink(vehicle.sender)) link->trust.Release(stamp);
 }
 
 void PriorityPerception::DropEnded() {
@@ -349,7 +349,7 @@ void PriorityPerception::Report(Link& link, Timestamp stamp, Outputs& outputs) {
   report.evidence = {{judgement->finding.quantity, judgement->finding.value},
                      {"limit", judgement->finding.limit}};
   outputs.reports.push_back(std::move(report));
-  if (PriorityVehicle* vehicle = VehicleOf(link.sender)) EndVehicle(*vehicle);
+  if (PriorityVehicle* vehicle = VehicleOf(link.sender)) EndVehicle(*vehicle, stamp);
 }
 
 }  // namespace v2vouch

@@ -152,7 +152,7 @@ class PriorityPerception {
   void UseClaim(Link& link, PriorityVehicle& vehicle, const ClaimInOdometry& here);
   void TryValidate(Link& link, const ClaimInOdometry& here);
 
-  void EndVehicle(PriorityVehicle& vehicle);
+  void EndVehicle(PriorityVehicle& vehicle, Timestamp stamp);
   void Report(Link& link, Timestamp stamp, Outputs& outputs);
   void DropEnded();
 

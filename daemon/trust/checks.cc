@@ -43,23 +43,28 @@ std::optional<Finding> JudgeResidual(std::string_view check, const Eigen::Vector
 
 }  // namespace
 
-void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& config) {
-  const double dt_s = has_any_ ? std::max(0.0, ToSeconds(observation.stamp - last_)) : 0.0;
-  if (has_any_ && dt_s <= 1.0) {
+void ResidualHistory::LookForTear(const CoObservation& observation, const TrustConfig& config) {
+  const double dt_s = last_step_ ? std::max(0.0, ToSeconds(observation.stamp - *last_step_)) : 0.0;
+  const double limit_m = config.torn_m + 2.0 * observation.sensed_sigma_m +
+                         kJitter_s * std::abs(observation.track_speed_mps);
+  if (last_step_ && dt_s <= 1.0) {
     Eigen::Vector2d step = observation.residual_O - last_residual_;
     if (observation.velocity_residual_O) step -= dt_s * *observation.velocity_residual_O;
     unexplained_ = std::exp(-dt_s / config.mean_time_s) * unexplained_ + step;
-    const double limit_m = config.torn_m + 2.0 * observation.sensed_sigma_m +
-                           kJitter_s * std::abs(observation.track_speed_mps);
     is_torn_ = unexplained_.norm() > limit_m;
   } else {
     // After a time unseen the vehicle has come back, or another has been taken for it.
-    const double limit_m = config.torn_m + 2.0 * observation.sensed_sigma_m +
-                           kJitter_s * std::abs(observation.track_speed_mps);
     is_torn_ = has_any_ && (observation.residual_O - mean_).norm() > limit_m;
     unexplained_.setZero();
   }
+  last_step_ = observation.stamp;
   last_residual_ = observation.residual_O;
+}
+
+void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& config) {
+  LookForTear(observation, config);
+  if (observation.is_partial) return;
+  const double dt_s = has_any_ ? std::max(0.0, ToSeconds(observation.stamp - last_)) : 0.0;
   // A plain mean at first, so that one wild first residual does not linger; fading afterwards.
   const double span_s = std::max(std::min(time_s_ + dt_s, config.mean_time_s), 1e-3);
   const double w = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / span_s) : 1.0;

@@ -31,7 +31,10 @@ struct CoObservation {
   double accel_residual_mps2 = 0.0;
   double accel_sigma_mps2 = 0.5;  ///< Of the sensed acceleration.
   double sensed_sigma_m = 0.0;    ///< Of the sensed position, by which the sensors may be wrong.
-  bool is_ego_shifted = false;    ///< Common mode: `shift_O` is our own fault, its history unknown.
+  /// The sensors have but a part of the vehicle, along which they drag their track: no residual to
+  /// judge by, but one that may be torn.
+  bool is_partial = false;
+  bool is_ego_shifted = false;  ///< Common mode: `shift_O` is our own fault, its history unknown.
   Eigen::Vector2d shift_O = Eigen::Vector2d::Zero();
 };
 
@@ -65,10 +68,13 @@ class ResidualHistory {
  private:
   static constexpr std::size_t kBlocks = 12;
   static constexpr double kFastShare = 0.3;  // Of mean_time_s.
+  void LookForTear(const CoObservation& observation, const TrustConfig& config);
+
   bool has_any_ = false;
   bool has_yaw_ = false;
   bool is_torn_ = false;
   Timestamp last_{};
+  std::optional<Timestamp> last_step_;
   Eigen::Vector2d last_residual_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d unexplained_ = Eigen::Vector2d::Zero();  // Fading sum of such steps.
   double time_s_ = 0.0;  // Under observation, gaps over 1 s not counted.

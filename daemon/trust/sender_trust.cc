@@ -49,10 +49,11 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
   const double dt_s = ToSeconds(observation.stamp - history_.last());
   history_.Add(observation, config);
   if (history_.is_torn() && consistent_run_ >= config.candidate_messages) {
-    Release();
+    Release(observation.stamp);
     history_ = {};
     return false;
   }
+  if (observation.is_partial) return true;
   std::optional<Finding> gravest;
   for (const auto check : {CheckLevel, CheckDrift, CheckVelocity, CheckAcceleration}) {
     const auto finding = check(history_, observation, config);
@@ -89,8 +90,11 @@ void SenderTrust::OnFinding(Timestamp stamp, const Finding& finding, bool may_ac
 bool SenderTrust::TryValidate(const ValidationEvidence& evidence, const TrustConfig& config) {
   if (state_ != TrustState::kCandidate || evidence.is_ego_gnss_suspect) return false;
   if (consistent_run_ < config.candidate_messages || evidence.is_accuracy_poor) return false;
-  if (evidence.co_observations < config.co_observations) return false;
-  if (evidence.span_s < config.co_observed_s) return false;
+  const bool is_known = released_ && ToSeconds(evidence.stamp - *released_) <= config.again_s;
+  if (evidence.co_observations < (is_known ? config.again_observations : config.co_observations)) {
+    return false;
+  }
+  if (evidence.span_s < (is_known ? config.again_observed_s : config.co_observed_s)) return false;
   if (!evidence.is_level_plausible || !evidence.is_size_plausible) return false;
   if (!evidence.is_nis_consistent || evidence.margin < evidence.min_margin) return false;
   if (!evidence.is_assigned || !evidence.are_sensors_sure) return false;
@@ -106,8 +110,9 @@ void SenderTrust::OnSensorsRegained() {
   if (state_ == TrustState::kBridged) state_ = TrustState::kValidated;
 }
 
-void SenderTrust::Release() {
+void SenderTrust::Release(Timestamp stamp) {
   if (!is_relied_on()) return;
+  released_ = stamp;
   state_ = TrustState::kCandidate;
   history_ = {};
 }
@@ -138,6 +143,7 @@ void SenderTrust::Suspect(Timestamp stamp, const Finding& finding) {
   clean_s_ = 0.0;
   if (has_penalty()) return;
   state_ = TrustState::kSuspect;
+  released_.reset();
   state_since_ = stamp;
   consistent_run_ = 0;
   suspicions_ = std::min(suspicions_ + 1, kMaxDoublings);
@@ -149,6 +155,7 @@ void SenderTrust::Revoke(Timestamp stamp, const Finding& finding) {
   clean_s_ = 0.0;
   if (state_ == TrustState::kRevoked) return;
   state_ = TrustState::kRevoked;
+  released_.reset();
   state_since_ = stamp;
   consistent_run_ = 0;
   accusations_ = std::min(accusations_ + 1, kMaxDoublings);

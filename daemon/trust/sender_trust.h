@@ -21,6 +21,7 @@ struct Penalty {
 
 /// What the sensors and the association say for a sender at this moment.
 struct ValidationEvidence {
+  Timestamp stamp{};
   int co_observations = 0;
   double span_s = 0.0;
   bool is_nis_consistent = false;
@@ -76,7 +77,8 @@ class SenderTrust {
 
   void OnSensorsLost();      ///< VALIDATED -> BRIDGED.
   void OnSensorsRegained();  ///< BRIDGED -> VALIDATED.
-  void Release();            ///< Bridge or contact ended without blame -> CANDIDATE.
+  /// Bridge or contact ended without blame -> CANDIDATE, which is validated again sooner.
+  void Release(Timestamp stamp);
   /// Takes over state, history and penalties of the identity this one continues.
   void InheritFrom(const SenderTrust& old) { *this = old; }
   [[nodiscard]] Penalty penalty() const;
@@ -105,6 +107,7 @@ class SenderTrust {
   int accusations_ = 0;
   double clean_s_ = 0.0;  // Agreeing with the sensors since the last finding.
   Timestamp state_since_{};
+  std::optional<Timestamp> released_;  // Relied on until then, and not blamed since.
   Timestamp last_finding_{};
   std::optional<Timestamp> accusable_since_;
   ResidualHistory history_;

@@ -12,9 +12,13 @@ namespace v2vouch {
 /// Thresholds of the trust checks and of the state machine. "Withdraw" stops
 /// believing, "accuse" reports a liar.
 struct TrustConfig {
-  int candidate_messages = 3;     ///< Consistent messages that make a CANDIDATE.
-  int co_observations = 10;       ///< Claims seen together with the sensors before VALIDATED ...
-  double co_observed_s = 1.5;     ///< ... and over this long.
+  int candidate_messages = 3;  ///< Consistent messages that make a CANDIDATE.
+  int co_observations = 10;    ///< Claims seen together with the sensors before VALIDATED ...
+  double co_observed_s = 1.5;  ///< ... and over this long.
+  int again_observations =
+      5;  ///< For a sender relied on within the last again_s and not blamed ...
+  double again_observed_s = 0.6;  ///< ... so many, over so long, suffice.
+  double again_s = 10.0;
   double mean_time_s = 1.0;       ///< Residuals are averaged over this time.
   double level_withdraw_m = 5.0;  ///< C8: level of the raw residual.
   double level_accuse_m = 12.0;
@@ -47,6 +51,9 @@ struct TrustConfig {
     a.Field("candidate_messages", candidate_messages, {.at_least = 1, .at_most = 100});
     a.Field("co_observations", co_observations, {.at_least = 2, .at_most = 1000});
     a.Field("co_observed_s", co_observed_s, {.at_least = 0.2, .at_most = 60.0});
+    a.Field("again_observations", again_observations, {.at_least = 2, .at_most = 1000});
+    a.Field("again_observed_s", again_observed_s, {.at_least = 0.2, .at_most = 60.0});
+    a.Field("again_s", again_s, {.at_least = 0.0, .at_most = 600.0});
     a.Field("mean_time_s", mean_time_s, {.at_least = 0.1, .at_most = 10.0});
     a.Field("level_withdraw_m", level_withdraw_m, {.above = 0.0, .at_most = 50.0});
     a.Field("level_accuse_m", level_accuse_m, {.above = 0.0, .at_most = 50.0});

@@ -151,6 +151,7 @@ int Run(const RunOptions& options) {
   std::map<std::string, std::int64_t> counts;
   std::int64_t unsent = 0;
   Simulation simulation(*world, options.seed);
+  for (const std::string& note : simulation.notes()) Complain(note);
   std::vector<SimEvent> events;
   for (bool more = true; more && stop_asked == 0;) {
     more = simulation.Step(events);

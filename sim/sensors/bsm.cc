@@ -15,6 +15,9 @@ std::int32_t Rounded(double value, double unit, double low, double high) {
 
 constexpr double kDeviceBehind_m = 30.0;
 
+// A unit signs after most of its delay has passed; the rest is the radio.
+constexpr double kSignedAfter = 0.8;
+
 // Free-space loss at 5.9 GHz: 20 log10(4 pi f / c) = 47.9 dB at 1 m.
 double PathLoss_db(double distance_m) {
   return 47.9 + 20.0 * std::log10(std::max(1.0, distance_m));
@@ -215,10 +218,12 @@ std::optional<Message> BsmSender::NextMessage() {
   message.time_s = time;
   message.stamp_s = time;
   message.signed_s = time;
+  message.signed_after_s = kSignedAfter * latency;
   message.latency_s = latency;
   message.identity = IdentityOf(seed_, subject_, IdentityNumber(sender_, time));
   message.msg_count = static_cast<int>((first_msg_count_ + number) % 128);
   message.rssi_dbm = channel.rssi_dbm + fading;
+  message.loss = channel.loss;
   message.is_lost = luck < channel.loss;
   message.device = subject_;
   message.vehicle = subject_;

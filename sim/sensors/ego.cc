@@ -72,6 +72,13 @@ void EgoGnssSimulator::Measure(const Snapshot& snapshot, std::int64_t seq, doubl
   if (spec.jump_at_s > 0.0 && snapshot.time_s >= spec.jump_at_s) {
     shift += Vec2(spec.jump_east_m, spec.jump_north_m);
   }
+  Vec2 drag_mps = Vec2::Zero();
+  if (spec.ramp_s > 0.0) {
+    const Vec2 whole(spec.ramp_east_m, spec.ramp_north_m);
+    const double share = (snapshot.time_s - spec.ramp_at_s) / spec.ramp_s;
+    shift += std::clamp(share, 0.0, 1.0) * whole;
+    if (share > 0.0 && share < 1.0) drag_mps = whole / spec.ramp_s;
+  }
   const GeodeticPlace place = GeodeticOf(plane_, antenna + shift, error.height_m);
   fix.seq = seq;
   fix.latitude_rad = FromDegrees(place.latitude_deg);
@@ -96,7 +103,7 @@ void EgoGnssSimulator::Measure(const Snapshot& snapshot, std::int64_t seq, doubl
   fix.heading_sigma_rad =
       spec.has_heading ? std::max(1e-4, std::hypot(spec.heading_sigma_rad, spec.heading_bias_rad))
                        : nan;
-  const Vec2 velocity_W = snapshot.ego.VelocityAt(antenna);
+  const Vec2 velocity_W = snapshot.ego.VelocityAt(antenna) + drag_mps;
   const Vec2 east_W = Direction(-place.turn_rad);  // True east, seen in W.
   fix.velocity_east_mps = velocity_W.dot(east_W) + east_noise;
   fix.velocity_north_mps = velocity_W.dot(LeftOf(east_W)) + north_noise;

@@ -13,9 +13,6 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// A unit signs after most of its delay has passed; the rest is the radio.
-constexpr double kSignedAfter = 0.8;
-
 double Unless(bool is_unavailable, double value) { return is_unavailable ? kNan : value; }
 
 }  // namespace
@@ -49,8 +46,7 @@ bsm_t MessageWriter::Encode(const Message& message) const {
   bsm_t bsm{};
   Quantise(state, bsm);
   bsm.rx_utime = Utime(message.time_s) + std::llround(message.latency_s * 1e6);
-  bsm.generation_utime =
-      Utime(message.signed_s) + std::llround(kSignedAfter * message.latency_s * 1e6);
+  bsm.generation_utime = Utime(message.signed_s) + std::llround(message.signed_after_s * 1e6);
   bsm.msgCnt = static_cast<std::int16_t>(message.msg_count % 128);
   std::copy(message.identity.id.begin(), message.identity.id.end(), std::begin(bsm.id));
   std::copy(message.identity.certificate.begin(), message.identity.certificate.end(),

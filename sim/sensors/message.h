@@ -42,19 +42,22 @@ struct Statement {
 struct Message {
   double time_s =
       0.0;  ///< When the unit took its turn: what it would honestly have said was so then.
-  double stamp_s = 0.0;    ///< The time secMark tells.
-  double signed_s = 0.0;   ///< The time the signature's stamp is reckoned from.
-  double latency_s = 0.0;  ///< From time_s to reception.
+  double stamp_s = 0.0;         ///< The time secMark tells.
+  double signed_s = 0.0;        ///< The signature's stamp: this time ...
+  double signed_after_s = 0.0;  ///< ... and so long after.
+  double latency_s = 0.0;       ///< From time_s to reception.
   Statement said;
   Identity identity;
   int msg_count = 0;
   int signature_state = 1;  ///< As in bsm_t.
   double rssi_dbm = 0.0;
-  bool is_lost = false;  ///< On its way.
+  double loss = 0.0;     ///< Probability that it is lost on its way ...
+  bool is_lost = false;  ///< ... and whether it is.
 
-  std::uint32_t device = 0;         ///< Who transmits: the vehicle's id, or above kFirstDeviceId.
-  std::uint32_t vehicle = 0;        ///< It speaks for; 0 = there is none.
-  Vec2 error = Vec2::Zero();        ///< Of this unit's receiver now.
+  std::uint32_t device = 0;   ///< Who transmits: the vehicle's id, or above kFirstDeviceId.
+  int voice = 0;              ///< Which of this transmitter's identities at a time; 0 = its own.
+  std::uint32_t vehicle = 0;  ///< It speaks for; 0 = there is none.
+  Vec2 error = Vec2::Zero();  ///< Of this unit's receiver now.
   std::optional<Statement> honest;  ///< Of that vehicle, by an honest unit with the same errors.
   bool is_attacker = false;
   bool is_attack = false;

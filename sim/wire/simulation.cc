@@ -7,6 +7,7 @@
 #include <v2vouch/text_t.hpp>
 
 #include "daemon/wire/codec.h"
+#include "sim/attacks/attack_engine.h"
 #include "sim/sensors/bsm.h"
 #include "sim/sensors/camera.h"
 #include "sim/sensors/ego.h"
@@ -53,10 +54,17 @@ struct Simulation::State {
     std::int64_t stamp_utime = 0;
     std::optional<bsm_t> bsm;  // Numbered and encoded when its turn comes.
     std::optional<truth_bsm_t> truth;
+    bool is_cut = false;  // Half of its bytes arrive.
   };
 
   State(const World& w, std::uint64_t s)
-      : world(w), seed(s), odometry(w, s), gnss(w, s), truth(w, s), writer(w.scenario()) {
+      : world(w),
+        seed(s),
+        odometry(w, s),
+        gnss(w, s),
+        truth(w, s),
+        attacks(w, s),
+        writer(w.scenario()) {
     const Scenario& scenario = w.scenario();
     start_utime = static_cast<std::int64_t>(scenario.start_utc_s) * 1000000;
     for (std::size_t i = 0; i < scenario.vehicle.radars.size(); ++i) {
@@ -109,6 +117,7 @@ struct Simulation::State {
   void RunTruth(double until_s);
   void RunSenders(double until_s);
   void Transmit(const Message& message);
+  void Pend(const bsm_t& bsm);
   void Deliver(Timestamp before, std::vector<SimEvent>& events);
 
   const World& world;
@@ -122,6 +131,7 @@ struct Simulation::State {
   TruthWriter truth;
   Ticks odometry_ticks, gnss_ticks, truth_ticks;
   std::vector<BsmSender> senders;
+  AttackEngine attacks;
   MessageWriter writer;
   std::int64_t bsm_seq = 0;
   std::vector<Pending> queue;
@@ -191,22 +201,37 @@ void Simulation::State::RunTruth(double until_s) {
 }
 
 void Simulation::State::RunSenders(double until_s) {
+  std::vector<Message> messages;
   for (BsmSender& sender : senders) {
     while (sender.next_time_s() < until_s) {
-      const std::optional<Message> message = sender.NextMessage();
-      if (message && !message->is_lost) Transmit(*message);
+      std::optional<Message> message = sender.NextMessage();
+      if (message) messages.push_back(std::move(*message));
     }
+  }
+  attacks.Apply(until_s, messages);
+  for (const Message& message : messages) {
+    if (!message.is_lost) Transmit(message);
+  }
+  std::vector<RawMessage> raw;
+  attacks.AddFloods(until_s, raw);
+  for (const RawMessage& message : raw) {
+    Pend(message.bsm);
+    queue.back().is_cut = message.is_cut;
   }
 }
 
 void Simulation::State::Transmit(const Message& message) {
   const bsm_t bsm = writer.Encode(message);
+  Pend(bsm);
+  queue.back().truth = writer.Truth(message, bsm);
+}
+
+void Simulation::State::Pend(const bsm_t& bsm) {
   Pending pending;
   pending.event.arrival = FromMicros(bsm.rx_utime);
   pending.event.channel = "BSM";
   pending.stamp_utime = bsm.generation_utime;
   pending.bsm = bsm;
-  pending.truth = writer.Truth(message, bsm);
   queue.push_back(std::move(pending));
 }
 
@@ -223,6 +248,7 @@ void Simulation::State::Deliver(Timestamp before, std::vector<SimEvent>& events)
     if (pending.bsm) {
       pending.bsm->seq = bsm_seq++;
       wire::Encode(*pending.bsm, pending.event.bytes);
+      if (pending.is_cut) pending.event.bytes.resize(pending.event.bytes.size() / 2);
     }
     events.push_back(std::move(pending.event));
     if (pending.truth) {
@@ -265,6 +291,8 @@ bool Simulation::Step(std::vector<SimEvent>& events) {
   state.Deliver(FromMicros(state.Utime(until)), events);
   return until < duration;
 }
+
+const std::vector<std::string>& Simulation::notes() const { return state_->attacks.notes(); }
 
 double Simulation::progress() const { return state_->done_s / state_->world.scenario().duration_s; }
 

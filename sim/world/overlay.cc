@@ -42,12 +42,17 @@ bool Read(const std::string& path, OverlayFile& file, Overlay& overlay,
   file.scenario.poles.clear();
   file.scenario.pole_rows.clear();
   file.scenario.rails.clear();
+  file.scenario.attacks.clear();
   file.scenario.overlays.clear();
   if (!config::Load(path, file, problems)) return false;
   overlay.name = file.scenario.name.empty() ? OverlayName(path) : file.scenario.name;
   overlay.description = file.scenario.description;
   overlay.suits = file.suits;
-  return true;
+  const std::size_t before = problems.size();
+  for (std::size_t i = 0; i < file.scenario.attacks.size(); ++i) {
+    CheckAttack(file.scenario.attacks[i], path + ": attacks[" + std::to_string(i) + "]", problems);
+  }
+  return problems.size() == before;
 }
 
 }  // namespace
@@ -81,6 +86,10 @@ bool LayOver(const std::string& path, Scenario& scenario, std::vector<std::strin
   PutBefore(scenario.poles, merged.poles);
   PutBefore(scenario.pole_rows, merged.pole_rows);
   PutBefore(scenario.rails, merged.rails);
+  for (AttackSpec& attack : merged.attacks) {
+    if (attack.name.empty()) attack.name = overlay.name;
+  }
+  PutBefore(scenario.attacks, merged.attacks);
   merged.overlays = scenario.overlays;
   merged.overlays.push_back(overlay.name);
   scenario = std::move(merged);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world/scenario.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -46,6 +47,17 @@ bool CheckReferences(const Scenario& scenario, std::vector<std::string>& problem
     if (!building.outline.empty() &&
         (building.outline.size() < 6 || building.outline.size() % 2 != 0)) {
       problems.push_back("buildings: outline needs x, y of three corners at least");
+    }
+  }
+  for (std::size_t i = 0; i < scenario.attacks.size(); ++i) {
+    CheckAttack(scenario.attacks[i], "attacks[" + std::to_string(i) + "]", problems);
+    for (const std::uint32_t id : scenario.attacks[i].who.vehicles) {
+      const auto it = std::find_if(scenario.vehicles.begin(), scenario.vehicles.end(),
+                                   [id](const VehicleSpec& v) { return v.id == id; });
+      if (it != scenario.vehicles.end() ? !it->v2v : scenario.trajectories.empty()) {
+        problems.push_back("attacks[" + std::to_string(i) + "].who.vehicles: no vehicle " +
+                           std::to_string(id) + " that talks");
+      }
     }
   }
   return problems.size() == before;

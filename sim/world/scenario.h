@@ -9,6 +9,7 @@
 #include "daemon/base/visit.h"
 #include "daemon/data/input.h"
 #include "daemon/data/vehicle.h"
+#include "sim/world/attack_spec.h"
 #include "sim/world/radio_specs.h"
 #include "sim/world/sensor_specs.h"
 #include "sim/world/traffic_spec.h"
@@ -49,11 +50,13 @@ struct WaypointSpec {
 struct RouteSpec {
   std::string name;
   std::vector<WaypointSpec> waypoints;
+  double centre_m = 0.0;  ///< The road's centre line, from the route, left positive; 0 = not known.
 
   template <class Archive>
   void Visit(Archive& a) {
     a.Text("name", name);
     a.Field("waypoints", waypoints);
+    a.Field("centre_m", centre_m, {.at_least = -100.0, .at_most = 100.0});
   }
 };
 
@@ -279,6 +282,7 @@ struct Scenario {
   RadioSpec radio;
   EgoGnssSpec gnss;
   OdometrySpec odometry;
+  std::vector<AttackSpec> attacks;
   std::vector<std::string> overlays;  ///< Names of what was laid over it, in order (overlay.h).
 
   std::string folder{};  ///< Of the file it came from; not in the file.
@@ -307,6 +311,7 @@ struct Scenario {
     a.Field("radio", radio);
     a.Field("gnss", gnss);
     a.Field("odometry", odometry);
+    a.Field("attacks", attacks);
     a.Field("overlays", overlays);
   }
 };

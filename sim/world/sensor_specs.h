@@ -46,6 +46,10 @@ struct EgoGnssSpec {
   bool has_heading = true;  ///< Dual antenna or the receiver's own fusion.
   double heading_bias_rad = FromDegrees(0.1);
   double heading_sigma_rad = FromDegrees(0.2);
+  double ramp_at_s = 0.0;    ///< From then on the fix is carried away evenly, ...
+  double ramp_s = 0.0;       ///< ... for so long (0 = never), velocity and all, ...
+  double ramp_east_m = 0.0;  ///< ... as far as this.
+  double ramp_north_m = 0.0;
   double jump_at_s = 0.0;  ///< From then on the fix is off by jump_east/north; 0 = never.
   double jump_east_m = 0.0;
   double jump_north_m = 0.0;
@@ -59,6 +63,10 @@ struct EgoGnssSpec {
     a.Field("has_heading", has_heading);
     a.Degrees("heading_bias_deg", heading_bias_rad, {.at_least = -180.0, .at_most = 180.0});
     a.Degrees("heading_sigma_deg", heading_sigma_rad, {.at_least = 0.0, .at_most = 180.0});
+    a.Field("ramp_at_s", ramp_at_s, {.at_least = 0.0, .at_most = 1e5});
+    a.Field("ramp_s", ramp_s, {.at_least = 0.0, .at_most = 1e5});
+    a.Field("ramp_east_m", ramp_east_m, {.at_least = -1e6, .at_most = 1e6});
+    a.Field("ramp_north_m", ramp_north_m, {.at_least = -1e6, .at_most = 1e6});
     a.Field("jump_at_s", jump_at_s, {.at_least = 0.0, .at_most = 1e5});
     a.Field("jump_east_m", jump_east_m, {.at_least = -1e6, .at_most = 1e6});
     a.Field("jump_north_m", jump_north_m, {.at_least = -1e6, .at_most = 1e6});

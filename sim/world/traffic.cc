@@ -76,7 +76,7 @@ const TrafficLaneSpec& DrawLane(const std::vector<TrafficLaneSpec>& lanes, Rando
   return lanes[chosen];
 }
 
-VehicleSpec Draw(const TrafficSpec& traffic, Random& random) {
+VehicleSpec DrawVehicle(const TrafficSpec& traffic, Random& random) {
   const TrafficLaneSpec& lane = DrawLane(traffic.lanes, random);
   VehicleSpec spec;
   spec.drive.route = lane.route;
@@ -127,7 +127,7 @@ bool AddTraffic(const Scenario& scenario, const std::map<std::string, Path>& pat
                          [&](const Way& other) { return AreApart(way, other, traffic.gap_m); });
     };
     for (int tries = kTries; placed < traffic.vehicles && tries > 0; --tries) {
-      VehicleSpec spec = Draw(traffic, random);
+      VehicleSpec spec = DrawVehicle(traffic, random);
       const Path& path = paths.at(spec.drive.route);
       if (!fits(SteadyWay(spec, path, steps))) continue;
       spec.id = kFirstTrafficId + static_cast<std::uint32_t>(placed);

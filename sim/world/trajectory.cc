@@ -32,14 +32,6 @@ double SmoothStep(double t) {
   return t * t * t * (t * (6.0 * t - 15.0) + 10.0);
 }
 
-double LateralOffset(const DriveSpec& drive, double time_s) {
-  double offset = drive.offset_m;
-  for (const LaneChangeSpec& change : drive.lane_changes) {
-    offset += (change.offset_m - offset) * SmoothStep((time_s - change.at_s) / change.over_s);
-  }
-  return offset;
-}
-
 // Fastest speed at every half metre that bends and the braking before them allow.
 class SpeedLimit {
  public:
@@ -69,6 +61,14 @@ class SpeedLimit {
 };
 
 }  // namespace
+
+double LateralOffset(const DriveSpec& drive, double time_s) {
+  double offset = drive.offset_m;
+  for (const LaneChangeSpec& change : drive.lane_changes) {
+    offset += (change.offset_m - offset) * SmoothStep((time_s - change.at_s) / change.over_s);
+  }
+  return offset;
+}
 
 Trajectory Trajectory::Drive(const Path& path, const DriveSpec& drive, double length_m,
                              double centre_ahead_m, double duration_s) {

@@ -25,6 +25,9 @@ struct Motion {
 /// of the length. So the centre swings out in a bend as that of a real car does.
 inline constexpr double kCentreAheadOfAxle = 0.28;
 
+/// Where `drive` is beside its route, left positive, lane changes included.
+double LateralOffset(const DriveSpec& drive, double time_s);
+
 /// A vehicle's motion over time, tabulated every 10 ms and read in between.
 class Trajectory {
  public:

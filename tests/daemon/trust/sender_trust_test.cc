@@ -110,8 +110,18 @@ TEST(SenderTrust, BridgesAndComesBack) {
   EXPECT_EQ(trust.state(), TrustState::kBridged);
   trust.OnSensorsRegained();
   EXPECT_EQ(trust.state(), TrustState::kValidated);
-  trust.Release();
+  trust.Release(At(5.0));
   EXPECT_EQ(trust.state(), TrustState::kCandidate);
+
+  // Known and not blamed: validated again sooner, but not much later.
+  ValidationEvidence again = Good();
+  again.co_observations = kConfig.again_observations;
+  again.span_s = kConfig.again_observed_s;
+  SenderTrust late = trust;
+  again.stamp = At(8.0);
+  EXPECT_TRUE(trust.TryValidate(again, kConfig));
+  again.stamp = At(20.0);
+  EXPECT_FALSE(late.TryValidate(again, kConfig));
 }
 
 TEST(SenderTrust, SuspectMustBeCleanAndTwiceAsLongTheSecondTime) {

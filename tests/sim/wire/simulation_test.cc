@@ -15,6 +15,7 @@
 
 #include "daemon/wire/codec.h"
 #include "sim/sensors/bsm.h"
+#include "sim/world/overlay.h"
 
 namespace v2vouch::sim {
 namespace {
@@ -142,6 +143,77 @@ TEST(Simulation, HonestMessagesAreTheUnitsOwnAndTheirTruthSaysSo) {
   EXPECT_GT(count, 1000);
   EXPECT_LT(sent.size(), 10u);  // Under way when the scenario ends.
 }
+
+std::unique_ptr<World> Attacked(const std::string& overlay, std::uint64_t seed) {
+  Scenario scenario;
+  std::vector<std::string> problems;
+  EXPECT_TRUE(LoadScenario("sim/scenarios/campaign_urban.yaml", scenario, problems));
+  scenario.duration_s = 20.0;
+  scenario.traffic.vehicles = 3;
+  if (!overlay.empty()) {
+    EXPECT_TRUE(LayOver("sim/attacks/catalogue/" + overlay + ".yaml", scenario, problems));
+  }
+  EXPECT_TRUE(CheckReferences(scenario, problems));
+  auto world = World::Make(scenario, seed, problems);
+  for (const std::string& problem : problems) ADD_FAILURE() << problem;
+  return world;
+}
+
+class UnderAttack : public testing::TestWithParam<const char*> {};
+
+// Whatever is lied by radio, the ego's own sensors, its GNSS and the truth keep every byte.
+TEST_P(UnderAttack, AllButTheRadioKeepsEveryByte) {
+  const auto honest = AllEvents(*Attacked("", 11), 11);
+  const auto attacked = AllEvents(*Attacked(GetParam(), 11), 11);
+  const auto others = [](const std::vector<SimEvent>& events) {
+    std::vector<const SimEvent*> kept;
+    for (const SimEvent& event : events) {
+      if (event.channel != "BSM" && event.channel != "TRUTH_BSM" &&
+          event.channel != "SIM_SCENARIO") {
+        kept.push_back(&event);
+      }
+    }
+    return kept;
+  };
+  const auto before = others(honest);
+  const auto after = others(attacked);
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    ASSERT_EQ(before[i]->channel, after[i]->channel);
+    ASSERT_EQ(before[i]->arrival, after[i]->arrival);
+    ASSERT_EQ(before[i]->bytes, after[i]->bytes) << before[i]->channel;
+  }
+  EXPECT_NE(honest.size() == attacked.size() &&
+                std::equal(honest.begin() + 1, honest.end(), attacked.begin() + 1,
+                           [](const SimEvent& a, const SimEvent& b) { return a.bytes == b.bytes; }),
+            true);
+}
+
+// Those who do not take part say what they would have said, at the same time.
+TEST_P(UnderAttack, HonestVehiclesSayTheSame) {
+  std::map<std::pair<std::int64_t, std::int64_t>, std::pair<std::int64_t, double>> honest;
+  for (const SimEvent& event : AllEvents(*Attacked("", 11), 11)) {
+    if (event.channel != "TRUTH_BSM") continue;
+    const auto truth = As<truth_bsm_t>(event);
+    honest[{truth.device_id, truth.utime}] = {truth.vehicle_id, truth.claimed_x_m};
+  }
+  std::int64_t count = 0;
+  for (const SimEvent& event : AllEvents(*Attacked(GetParam(), 11), 11)) {
+    if (event.channel != "TRUTH_BSM") continue;
+    const auto truth = As<truth_bsm_t>(event);
+    if (truth.is_attacker != 0) continue;
+    const auto same = honest.find({truth.device_id, truth.utime});
+    ASSERT_NE(same, honest.end());
+    EXPECT_EQ(same->second.first, truth.vehicle_id);
+    EXPECT_EQ(same->second.second, truth.claimed_x_m);
+    ++count;
+  }
+  EXPECT_GT(count, 800);
+}
+
+INSTANTIATE_TEST_SUITE_P(Some, UnderAttack,
+                         testing::Values("A01_ahead_30m", "A05_lateral_8m", "A11_grid_5",
+                                         "A12_three_ids", "A22_malformed_5000"));
 
 TEST(LeftTurn, CriticalCarIsSeenLongThenHiddenThreeToFiveSecondsThenSeenAgain) {
   const auto world = Shipped("left_turn", 1);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/world/world.h"
+
+namespace v2vouch::sim {
+
+/// How long each vehicle has been in joint view or hidden, at every tenth of a second of the run,
+/// by truth geometry. Joint view: a radar and a camera would each detect it with probability 0.5 at
+/// least, and it is 5 to 100 m from the ego. Hidden: no sensor would, and it is within 150 m. Gaps
+/// of joint view up to 0.5 s do not end it.
+class ViewTimeline {
+ public:
+  ViewTimeline(const World& world, std::uint64_t seed);
+
+  /// `actor` is an index into World::actors(). All in seconds up to `time_s`.
+  [[nodiscard]] double InViewFor(std::size_t actor, double time_s) const;
+  [[nodiscard]] double HiddenFor(std::size_t actor, double time_s) const;
+  /// Length of the joint view before the one that is on, or that ended last.
+  [[nodiscard]] double LastViewFor(std::size_t actor, double time_s) const;
+
+  /// Over the whole run: the longest joint view, and the longest time hidden right after a joint
+  /// view of 2 s at least.
+  [[nodiscard]] double LongestInView(std::size_t actor) const { return longest_view_[actor]; }
+  [[nodiscard]] double LongestHidden(std::size_t actor) const { return longest_hidden_[actor]; }
+
+ private:
+  struct Cell {
+    float in_view_s = 0.0f;
+    float hidden_s = 0.0f;
+    float last_view_s = 0.0f;
+  };
+  [[nodiscard]] const Cell& At(std::size_t actor, double time_s) const;
+
+  std::vector<std::vector<Cell>> cells_;  ///< By actor, then step.
+  std::vector<double> longest_view_, longest_hidden_;
+};
+
+}  // namespace v2vouch::sim
