@@ -139,7 +139,7 @@ class Neighbours {
 
 bool ContradictsItself(const Claim& before, const Claim& now, const MessageCheckSettings& s) {
   const double dt_s = now.sent_s - before.sent_s;
-  if (dt_s <= 0.0 || dt_s > s.window_s) return dt_s <= 0.0;
+  if (dt_s <= 0.0 || dt_s > s.window_s) return false;
   const double gain = now.speed_mps - before.speed_mps;
   if (gain > s.accel_mps2 * dt_s || -gain > s.decel_mps2 * dt_s) return true;
   const double moved_m = (now.p_W - before.p_W).norm();
@@ -149,7 +149,8 @@ bool ContradictsItself(const Claim& before, const Claim& now, const MessageCheck
   const double least_m = std::max(0.0, slow * dt_s - 0.5 * s.decel_mps2 * dt_s * dt_s);
   const double margin_down_m = s.margin_down_a + s.margin_down_b * now.speed_mps +
                                s.margin_down_c * now.speed_mps * now.speed_mps;
-  return moved_m > most_m + s.margin_up_m || moved_m < least_m - std::max(0.0, margin_down_m);
+  return moved_m > most_m + s.margin_up_m ||
+         moved_m < least_m - std::max(s.margin_up_m, margin_down_m);
 }
 
 bool TravelsOffItsHeading(const std::deque<Claim>& recent, const Claim& now,
@@ -177,10 +178,12 @@ class Checker {
     Sender& sender = senders_[m.sender];
     const bool fails = Fails(m, claim, now_s, sender);
     neighbours_.Keep(m.sender, claim, now_s);
-    sender.recent.push_back(claim);
-    while (sender.recent.size() > 1 &&
-           claim.sent_s - sender.recent.front().sent_s > settings_.heading_window_s) {
-      sender.recent.pop_front();
+    if (!IsOvertaken(sender, claim)) {
+      sender.recent.push_back(claim);
+      while (sender.recent.size() > 1 &&
+             claim.sent_s - sender.recent.front().sent_s > settings_.heading_window_s) {
+        sender.recent.pop_front();
+      }
     }
     sender.last_heard_s = now_s;
     const double worst_factor = fails ? 0.0 : 1.0;
@@ -204,8 +207,11 @@ class Checker {
       sender.kalman.Start(claim);
       return fails;
     }
+    // The radio lets one message in forty overtake another: that is no lie.
+    if (IsOvertaken(sender, claim)) return fails;
     const Claim& before = sender.recent.back();
     const double dt_s = claim.sent_s - before.sent_s;
+    fails |= dt_s < -s.disorder_s;
     fails |= ContradictsItself(before, claim, s);
     fails |= TravelsOffItsHeading(sender.recent, claim, s);
     fails |= dt_s < s.beacon_share * s.beacon_s - kRounding_s;
@@ -215,6 +221,12 @@ class Checker {
     }
     const auto [position_m, speed_mps] = sender.kalman.Step(claim, dt_s);
     return fails || position_m > s.kalman_m || speed_mps > s.kalman_mps;
+  }
+
+  bool IsOvertaken(const Sender& sender, const Claim& claim) const {
+    if (sender.recent.empty()) return false;
+    const double dt_s = claim.sent_s - sender.recent.back().sent_s;
+    return dt_s < -kRounding_s && dt_s >= -settings_.disorder_s;
   }
 
   static constexpr double kRounding_s = 0.002;  // secMark counts milliseconds.

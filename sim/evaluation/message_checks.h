@@ -19,7 +19,8 @@ struct MessageCheckSettings {
   double decel_mps2 = 4.5;
   double window_s = 3.1;     ///< Two messages are compared within this.
   double margin_up_m = 2.1;  ///< Moved further than both speeds allow.
-  /// Moved less far than both speeds allow: a + b v + c v^2 [m], v in m/s.
+  /// Moved less far than both speeds allow: a + b v + c v^2 [m], v in m/s; not below `margin_up_m`
+  /// (ours: the parabola falls to 0 at 32 m/s, where it would flag every honest car).
   double margin_down_a = 6.2, margin_down_b = 0.357, margin_down_c = -0.0169;
   double heading_rad = 1.5707963267948966;  ///< Direction of travel against heading ...
   double heading_window_s = 1.1;            ///< ... over at most this ...
@@ -27,6 +28,8 @@ struct MessageCheckSettings {
   /// Of the nominal interval: 0.9 s of 1 s there.
   double beacon_share = 0.9;
   double beacon_s = 0.1;  ///< Nominal interval here (SAE J2945/1: 10 Hz).
+  /// Ours: a message that another has overtaken by up to this is compared with nothing.
+  double disorder_s = 1.0;
   double kalman_m = 4.0;  ///< Innovations of a constant-velocity filter.
   double kalman_mps = 1.0;
   double overlap_share = 0.5;  ///< With another sender's newest claim, fading to 0 ...

@@ -61,6 +61,18 @@ TEST(MessageChecks, ARepeatedTimeIsTooShortAnInterval) {
   EXPECT_GE(CountFrom(Flags([](BsmTruth& m, double t) { m.age_s += t - 5.0; }), 51), 45);
 }
 
+TEST(MessageChecks, AnOvertakenMessageIsNoLieAndAFastCarNone) {
+  SpoofScene scene(12.0);
+  scene.AddCar(2, {-300.0, 0.0}, 34.0, kLiar);
+  AtTenHertz(0.0, 10.0, [&](double t) {
+    BsmTruth& m = scene.Say(t, 12, kLiar, 2, 3);
+    const bool is_late = std::abs(t - 5.0) < 0.01;  // Sent before the one that came at 4.9 s.
+    if (is_late) m.age_s += 0.2;
+    if (is_late) m.claimed.p_W.x() -= 6.8;
+  });
+  EXPECT_EQ(CountFrom(CheckMessages(scene.log()), 10), 0);
+}
+
 TEST(MessageChecks, TwoSendersInOnePlaceAreFlagged) {
   SpoofScene scene(12.0);
   scene.AddCar(2, {20.0, 0.0}, 10.0, kLiar);
