@@ -11,6 +11,7 @@
 #include <set>
 
 #include "sim/app/shipped_files.h"
+#include "sim/campaign/report.h"
 #include "sim/campaign/runner.h"
 #include "sim/campaign/summary.h"
 #include "sim/campaign/targets.h"
@@ -34,14 +35,15 @@ constexpr const char* kExamples =
     "      --jobs 8 --out study/ --json > study.json\n"
     "  v2vouch-campaign ... --shard 2/4 --out study/      a quarter of the same runs\n"
     "  v2vouch-campaign --merge host1/ host2/ --json      figures of what several hosts did\n"
-    "  v2vouch-campaign --ghosts-only --seeds 2 --out g/  is a ghost ever published?\n"
+    "  v2vouch-campaign --merge study/ --report page/     page/index.html, with plots\n"
+    "  v2vouch-campaign --ghosts-only --seeds 2 --out g/  is a liar ever published?\n"
     "\n"
     "The same call again takes up where it was stopped: each run leaves one small file under\n"
     "OUT/runs. Call with another --config, another daemon or other attacks: another --out.\n"
     "docs/campaign.md tells more, GNU parallel and Slurm included.\n"
     "\n"
     "Exit codes: 0 good; 1 a run failed or was stopped, with --gates a target is missed, with\n"
-    "--ghosts-only a ghost was published; 2 usage.";
+    "--ghosts-only an attacker was published as a ghost; 2 usage.";
 
 struct Options {
   std::string attacks = "all", honest = "none", shard;
@@ -49,7 +51,7 @@ struct Options {
   std::vector<int> densities = {0};
   int seeds = 1, jobs = 1;
   std::uint64_t first_seed = 1;
-  std::string out, config, lcm_url;
+  std::string out, config, report, lcm_url;
   std::vector<std::string> merge;
   bool as_json = false, field = false, keep = false, ghosts_only = false, no_plain = false;
   bool gates = false;
@@ -230,9 +232,18 @@ int Report(const Options& options) {
   const std::string figures =
       options.as_json ? SummaryJson(summary) : SummaryTable(summary, options.field);
   std::fputs(figures.c_str(), stdout);
+  if (!options.report.empty()) {
+    std::string problem;
+    const fs::path file = WriteReport(options.report, summary, problem);
+    if (file.empty()) {
+      Complain(problem);
+      return kFailed;
+    }
+    std::fprintf(stderr, "report: %s\n", file.c_str());
+  }
   bool is_good = problems.empty();
   if (options.ghosts_only) {
-    for (const Group& group : summary.attacks) is_good &= group.attack.ghosts == 0;
+    for (const Group& group : summary.attacks) is_good &= group.attack.ghosts_of_attackers == 0;
   }
   if (options.gates) {
     for (const Target& target : JudgeTargets(summary)) is_good &= target.is_met();
@@ -282,6 +293,7 @@ int main(int argc, char** argv) {
                "Leave out the runs without attack (LOCAL is then not compared)");
   app.add_flag("--gates", options.gates, "Exit code 1 when a target is missed or not measured");
   app.add_flag("--keep", options.keep, "Keep the log files, in OUT/tmp");
+  app.add_option("--report", options.report, "Folder for index.html (made if absent)");
   app.add_flag("--json", options.as_json, "Figures as JSON on standard output");
   app.add_option("-l,--lcm-url", options.lcm_url, "Accepted for uniformity; nothing goes over LCM");
   try {

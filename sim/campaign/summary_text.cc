@@ -77,6 +77,7 @@ Json AttackJson(const Group& group) {
                {"exposure_over_3m_s_per_run", a.harm_s},
                {"original_max_m", a.original_max_m},
                {"ghost_publications", a.ghosts},
+               {"ghosts_of_attackers", a.ghosts_of_attackers},
                {"outnumbered_instants", a.outnumbered},
                {"doubled_instants", a.doubled},
                {"local_digests_compared", group.digests_compared},
@@ -137,7 +138,8 @@ std::string AttackLine(const Group& group, bool is_variant) {
          Time(a, 0.95) + Cell(a.accuse_rate(), 2, 7) + Cell(a.by_message.f1, 3, 7) +
          Cell(a.by_message.low, 3, 7) + Cell(a.by_message.high, 3, 7) + Cell(a.by_source.f1, 3, 7) +
          Cell(Number(a.exposure_max_m), 1) + Cell(Number(a.ghosts), 0, 7) +
-         Cell(Number(group.digests_changed), 0, 6) + "\n";
+         Cell(Number(a.ghosts_of_attackers), 0, 5) + Cell(Number(group.digests_changed), 0, 6) +
+         "\n";
 }
 
 std::string HonestLine(const Group& group, bool is_variant) {
@@ -210,7 +212,7 @@ std::string SummaryTable(const Summary& summary, bool field) {
   if (!summary.attacks.empty()) {
     out += Padded("attack", 24) +
            " runs   src   met   p50[s]  p95[s] accuse     F1    low   high F1/src  exp[m] ghosts"
-           " LOCAL\n";
+           "  its LOCAL\n";
     out += Lines(summary.attacks, AttackLine);
   }
   if (!summary.honest.empty() || summary.plain) {

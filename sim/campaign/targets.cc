@@ -119,10 +119,10 @@ const std::vector<std::string_view> kFarTeleports = {"A8/jump_10m", "A8/jump_30m
 const std::vector<std::string_view> kHalfMetreDrift = {"A7/*_0.5mps"};
 
 void JudgeAttacks(Judge& judge) {
-  judge.Attacks("ghost publications, A1-A4",
+  judge.Attacks("ghost publications by attackers, A1-A4",
                 {"A1", "A1/*", "A2", "A2/*", "A3", "A3/*", "A4", "A4/*"}, false, 0, 0,
                 [](const Group& g) {
-                  return Reading{1.0 * g.attack.ghosts, false};
+                  return Reading{1.0 * g.attack.ghosts_of_attackers, false};
                 });
   judge.Attacks(
       "instants with a car listed twice or more tracks than cars, A11, A12",
@@ -192,6 +192,15 @@ std::vector<Target> JudgeTargets(const Summary& summary) {
   all.attack.honest = summary.all_honest;
   if (!summary.honest.empty() || summary.plain) {
     judge.Add("accusations per honest vehicle-hour", {&all}, false, 0.1, 3, AccusationsPerHour);
+  }
+  Group plain;
+  if (summary.plain) {
+    plain = *summary.plain;
+    plain.id = "no overlay";
+    judge.Add("ghosts by honest senders, without attack", {&plain}, false, 0, 0,
+              [](const Group& g) {
+                return Reading{1.0 * g.attack.ghosts, false};
+              });
   }
   judge.Honest("accusations per vehicle-hour, H3", {"H3", "H3/*"}, false, 1.0, 3,
                AccusationsPerHour);

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sim/campaign/families.h"
+#include "sim/campaign/report.h"
 #include "sim/campaign/targets.h"
 
 namespace v2vouch::campaign {
@@ -143,6 +145,33 @@ TEST(SummaryJson, HasTheFieldsThatWereAgreed) {
     EXPECT_TRUE(honest.contains(key)) << key;
   }
   EXPECT_TRUE(json.contains("score"));
+}
+
+TEST(Report, ShowsEveryAttackOnceInItsFamilyAndIsSelfContained) {
+  RunRecord drift = Attack("A7", "lateral_0.5mps", 1, 3.0, 2.0);
+  drift.ours.exposure.curve_m = {0.0, 2.0};
+  drift.ours.checks_by_message = evaluation::Confusion{10, 5, 90, 95};
+  const std::string html = ReportHtml(Summarise(
+      {drift, Attack("my<own>", "", 1, std::nullopt), Record(Kind::kHonest, "H1", "", 1)}));
+  EXPECT_THAT(html, HasSubstr("<h2>Slow drift</h2>"));
+  EXPECT_THAT(html, HasSubstr("<h2>Others</h2>"));
+  EXPECT_THAT(html, HasSubstr("my&lt;own&gt;"));
+  EXPECT_THAT(html, HasSubstr("Against the field"));
+  EXPECT_THAT(html, HasSubstr("clip-drift-time-A7"));
+  EXPECT_THAT(html, testing::Not(HasSubstr("<h2>Ghosts</h2>")));
+  for (const char* outside : {"src=", "href=", "<script", "url(http", "<link", "@import"}) {
+    EXPECT_THAT(html, testing::Not(HasSubstr(outside)));
+  }
+}
+
+TEST(Families, HoldEveryAttackOnce) {
+  std::vector<std::string> ids, all;
+  for (const Family& family : Families())
+    ids.insert(ids.end(), family.ids.begin(), family.ids.end());
+  for (int i = 1; i <= 28; ++i) all.push_back("A" + std::to_string(i));
+  EXPECT_THAT(ids, testing::UnorderedElementsAreArray(all));
+  EXPECT_EQ(PublishedF1("A6/random_20_70m"), 0.962);
+  EXPECT_FALSE(PublishedF1("A1/ahead_15m"));
 }
 
 TEST(SummaryTable, NamesWhatIsMissed) {
