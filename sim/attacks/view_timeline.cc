@@ -11,7 +11,7 @@ namespace v2vouch::sim {
 namespace {
 
 constexpr double kStep_s = 0.1;
-constexpr double kLikely = 0.5;
+constexpr double kLikely = 0.5;  // Before sensors.detection_scale.
 constexpr double kNearest_m = 5.0;
 constexpr double kFarthest_m = 100.0;
 constexpr double kReach_m = 150.0;
@@ -36,6 +36,7 @@ ViewTimeline::ViewTimeline(const World& world, std::uint64_t seed) {
   for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
     cameras.emplace_back(world, static_cast<int>(i), seed);
   }
+  const double likely = kLikely * world.scenario().sensors.detection_scale;
   const std::size_t n = world.actors().size();
   const auto steps = static_cast<std::size_t>(world.scenario().duration_s / kStep_s) + 2;
   cells_.assign(n, std::vector<Cell>(steps));
@@ -50,14 +51,14 @@ ViewTimeline::ViewTimeline(const World& world, std::uint64_t seed) {
     for (RadarSimulator& radar : radars) {
       radar.Look(snapshot, sights);
       for (std::size_t i = 0; i < looks.size(); ++i) {
-        looks[i].by_radar = looks[i].by_radar || sights[i].detection_probability >= kLikely;
+        looks[i].by_radar = looks[i].by_radar || sights[i].detection_probability >= likely;
         looks[i].by_any = looks[i].by_any || sights[i].detection_probability > 0.0;
       }
     }
     for (CameraSimulator& camera : cameras) {
       camera.Look(snapshot, sights);
       for (std::size_t i = 0; i < looks.size(); ++i) {
-        looks[i].by_camera = looks[i].by_camera || sights[i].detection_probability >= kLikely;
+        looks[i].by_camera = looks[i].by_camera || sights[i].detection_probability >= likely;
         looks[i].by_any = looks[i].by_any || sights[i].detection_probability > 0.0;
       }
     }

@@ -14,6 +14,8 @@ std::int32_t Rounded(double value, double unit, double low, double high) {
 }
 
 constexpr double kDeviceBehind_m = 30.0;
+constexpr double kPair_s = 0.05;
+constexpr double kLong_m = 10.0;  // Vehicles that BsmSpec::long_reference_m is about.
 
 // A unit signs after most of its delay has passed; the rest is the radio.
 constexpr double kSignedAfter = 0.8;
@@ -131,7 +133,9 @@ BsmSender::BsmSender(const World& world, int actor, std::uint32_t subject, std::
       speed_(sender_.noise_scale * world.scenario().bsm.speed_markov_mps,
              world.scenario().bsm.gnss.markov_time_s, errors_),
       heading_(sender_.noise_scale * world.scenario().bsm.heading_markov_rad,
-               world.scenario().bsm.gnss.markov_time_s, errors_) {
+               world.scenario().bsm.gnss.markov_time_s, errors_),
+      bursts_(world.scenario().bsm.bursts, SubjectRandom(seed, "sender bursts", {subject_})),
+      gaps_(world.scenario().radio, SubjectRandom(seed, "sender gaps", {subject_})) {
   Random start = SubjectRandom(seed, "sender start", {subject_});
   const double rate = sender_.rate_hz > 0.0 ? sender_.rate_hz : world.scenario().bsm.rate_hz;
   phase_s_ = start.Uniform() / rate;
@@ -141,10 +145,14 @@ BsmSender::BsmSender(const World& world, int actor, std::uint32_t subject, std::
 
 void BsmSender::Advance() {
   const BsmSpec& spec = world_.scenario().bsm;
+  if (is_second_) {
+    next_time_s_ += kPair_s;
+    return;
+  }
   const double rate = sender_.rate_hz > 0.0 ? sender_.rate_hz : spec.rate_hz;
   Random random =
-      SubjectRandom(seed_, "sender clock", {subject_, static_cast<std::uint64_t>(count_)});
-  next_time_s_ = phase_s_ + static_cast<double>(count_) / rate +
+      SubjectRandom(seed_, "sender clock", {subject_, static_cast<std::uint64_t>(tick_)});
+  next_time_s_ = phase_s_ + static_cast<double>(tick_) / rate +
                  random.Uniform(-spec.period_jitter_s, spec.period_jitter_s);
   next_time_s_ = std::max(0.0, next_time_s_);
 }
@@ -155,6 +163,10 @@ std::optional<Message> BsmSender::NextMessage() {
   const std::int64_t number = count_++;
   const double dt = std::max(1e-3, time - last_time_s_);
   last_time_s_ = time;
+  is_second_ = !is_second_ && spec.pair_share > 0.0 &&
+               SubjectRandom(seed_, "pair", {subject_, static_cast<std::uint64_t>(number)})
+                   .Bernoulli(spec.pair_share);
+  if (!is_second_) ++tick_;
   Advance();
 
   // Errors move on with every message, sent or lost, so that loss changes nothing else.
@@ -198,9 +210,11 @@ std::optional<Message> BsmSender::NextMessage() {
   }
   const Channel channel = Between(world_, snapshot, radio, subject_);
   const Vec2 bias(sender_.bias_east_m, sender_.bias_north_m);
+  const Vec2 burst = bursts_.At(time);
   said.time_s = time;
-  message.error = bias + position_error.horizontal;
-  said.centre = said.centre + bias + position_error.horizontal;
+  message.error = bias + position_error.horizontal + burst;
+  said.centre = said.centre + bias + position_error.horizontal + burst;
+  if (said.length_m > kLong_m) said.centre += spec.long_reference_m * Direction(said.yaw_rad);
   said.height_m = position_error.height_m;
   said.accel_lat_mps2 = said.speed_mps * said.yaw_rate_radps;
   const bool stands = std::abs(said.speed_mps) < 0.3;
@@ -211,10 +225,16 @@ std::optional<Message> BsmSender::NextMessage() {
   said.yaw_rad = held_yaw_rad_;
   said.speed_mps = stands ? 0.0 : said.speed_mps + speed_error + speed_noise;
   const GnssErrorSpec& e = spec.gnss;
-  said.semi_major_m = spec.semi_major_m > 0.0 ? spec.semi_major_m
-                                              : std::sqrt(e.bias_sigma_m * e.bias_sigma_m +
-                                                          e.markov_sigma_m * e.markov_sigma_m +
-                                                          e.white_sigma_m * e.white_sigma_m);
+  if (sender_.semi_major_m > 0.0) {
+    said.semi_major_m = sender_.semi_major_m;
+  } else if (spec.semi_major_m > 0.0) {
+    said.semi_major_m = spec.semi_major_m;
+  } else {
+    said.semi_major_m =
+        std::sqrt(e.bias_sigma_m * e.bias_sigma_m + e.markov_sigma_m * e.markov_sigma_m +
+                  e.white_sigma_m * e.white_sigma_m);
+  }
+  if (spec.bursts.is_reported) said.semi_major_m = std::hypot(said.semi_major_m, burst.norm());
   message.time_s = time;
   message.stamp_s = time;
   message.signed_s = time;
@@ -224,7 +244,7 @@ std::optional<Message> BsmSender::NextMessage() {
   message.msg_count = static_cast<int>((first_msg_count_ + number) % 128);
   message.rssi_dbm = channel.rssi_dbm + fading;
   message.loss = channel.loss;
-  message.is_lost = luck < channel.loss;
+  message.is_lost = luck < channel.loss || gaps_.IsSilent(time);
   message.device = subject_;
   message.vehicle = subject_;
   message.honest = said;

@@ -8,6 +8,7 @@
 #include "sim/sensors/ego.h"
 #include "sim/sensors/gnss_error.h"
 #include "sim/sensors/message.h"
+#include "sim/sensors/spells.h"
 #include "sim/world/world.h"
 
 namespace v2vouch::sim {
@@ -73,7 +74,11 @@ class BsmSender {
   Random errors_;
   GnssError position_;
   GaussMarkov speed_, heading_;
-  std::int64_t count_ = 0;
+  ErrorBursts bursts_;
+  RadioGaps gaps_;
+  std::int64_t count_ = 0;  // Messages made ...
+  std::int64_t tick_ = 0;   // ... and turns of the clock they were made in; a pair has one.
+  bool is_second_ = false;  // Of a pair is the next one.
   int first_msg_count_ = 0;
   double phase_s_ = 0.0;
   double next_time_s_ = 0.0;

@@ -84,7 +84,9 @@ CameraSimulator::CameraSimulator(const World& world, int index, std::uint64_t se
       camera_(world.scenario().vehicle.cameras[static_cast<std::size_t>(index)]),
       index_(static_cast<std::uint64_t>(index)),
       seed_(seed),
-      skyline_(HalfSpan(camera_), kRay_rad) {}
+      skyline_(HalfSpan(camera_), kRay_rad) {
+  camera_.detection_probability *= world.scenario().sensors.detection_scale;
+}
 
 Eigen::Vector3d CameraSimulator::ToBody(const EgoTruth& ego, const Vec2& point, double z_m) const {
   const Vec2 forward = Direction(ego.yaw_rad);

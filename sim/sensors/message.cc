@@ -13,6 +13,28 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+// All that SAE J2735 lets be unavailable, is.
+void MakeSparse(bsm_t& bsm) {
+  bsm.elev = -4096;
+  bsm.semiMajor = 255;
+  bsm.semiMinor = 255;
+  bsm.orientation = 65535;
+  bsm.transmission = 7;
+  bsm.angle = 127;
+  bsm.accelSet_long = 2001;
+  bsm.accelSet_lat = 2001;
+  bsm.accelSet_vert = -127;
+  bsm.accelSet_yaw = 0;
+  bsm.wheelBrakes = 0b10000;
+  bsm.traction = 0;
+  bsm.abs = 0;
+  bsm.scs = 0;
+  bsm.brakeBoost = 0;
+  bsm.auxBrakes = 0;
+  bsm.width = 0;
+  bsm.length = 0;
+}
+
 double Unless(bool is_unavailable, double value) { return is_unavailable ? kNan : value; }
 
 }  // namespace
@@ -20,7 +42,9 @@ double Unless(bool is_unavailable, double value) { return is_unavailable ? kNan 
 MessageWriter::MessageWriter(const Scenario& scenario)
     : plane_(PlaneOf(scenario.origin)),
       road_height_m_(scenario.origin.height_m),
-      start_utime_(static_cast<std::int64_t>(scenario.start_utc_s) * 1000000) {}
+      start_utime_(static_cast<std::int64_t>(scenario.start_utc_s) * 1000000),
+      leap_second_at_s_(scenario.bsm.leap_second_at_s),
+      is_sparse_(scenario.bsm.sparse) {}
 
 std::int64_t MessageWriter::Utime(double time_s) const {
   return start_utime_ + std::llround(time_s * 1e6);
@@ -45,6 +69,13 @@ bsm_t MessageWriter::Encode(const Message& message) const {
   state.brakes = said.brakes;
   bsm_t bsm{};
   Quantise(state, bsm);
+  if (is_sparse_) MakeSparse(bsm);
+  // In a leap second J2735 counts on to 60999. The ego's clock has no such second: for its length
+  // it runs ahead of the senders' count, then they agree again.
+  const double into_leap_s = message.stamp_s - leap_second_at_s_;
+  if (leap_second_at_s_ > 0.0 && into_leap_s >= 0.0 && into_leap_s < 1.0) {
+    bsm.secMark = 60000 + static_cast<std::int32_t>(into_leap_s * 1000.0);
+  }
   bsm.rx_utime = Utime(message.time_s) + std::llround(message.latency_s * 1e6);
   bsm.generation_utime = Utime(message.signed_s) + std::llround(message.signed_after_s * 1e6);
   bsm.msgCnt = static_cast<std::int16_t>(message.msg_count % 128);

@@ -84,6 +84,8 @@ class MessageWriter {
   GeographicLib::LocalCartesian plane_;
   double road_height_m_;
   std::int64_t start_utime_;
+  double leap_second_at_s_;  // 0 = never.
+  bool is_sparse_;
 };
 
 }  // namespace v2vouch::sim

@@ -104,6 +104,7 @@ RadarSimulator::RadarSimulator(const World& world, int index, std::uint64_t seed
       index_(static_cast<std::uint64_t>(index)),
       seed_(seed),
       skyline_(radar_.half_fov_rad, kRay_rad) {
+  radar_.detection_probability *= world.scenario().sensors.detection_scale;
   for (const Wall& wall : world.walls()) {
     for (std::size_t i = 0; i < wall.outline.size(); ++i) {
       const Vec2& a = wall.outline[i];

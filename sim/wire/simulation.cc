@@ -111,6 +111,12 @@ struct Simulation::State {
     return random.Bernoulli(0.01) ? usual + spread_s : usual;
   }
 
+  bool IsFrameLost(const char* name, std::uint64_t index, std::int64_t seq) const {
+    const double share = world.scenario().sensors.frame_loss;
+    return share > 0.0 &&
+           SubjectRandom(seed, name, {index, static_cast<std::uint64_t>(seq)}).Bernoulli(share);
+  }
+
   void RunRadars(double until_s);
   void RunCameras(double until_s);
   void RunEgo(double until_s);
@@ -148,6 +154,7 @@ void Simulation::State::RunRadars(double until_s) {
       scan.utime = Utime(time - radar.config.clock_offset_s);
       const double latency =
           Latency("radar latency", i, scan.seq, spec.radar_latency_s, spec.radar_latency_spread_s);
+      if (IsFrameLost("radar frame", i, scan.seq)) continue;
       Send("RADAR_" + radar.config.name, scan.utime, time + latency, scan);
     }
   }
@@ -166,6 +173,7 @@ void Simulation::State::RunCameras(double until_s) {
       picture.utime = Utime(time - camera.config.clock_offset_s);
       const double latency = Latency("camera latency", i, picture.seq, spec.camera_latency_s,
                                      spec.camera_latency_spread_s);
+      if (IsFrameLost("camera frame", i, picture.seq)) continue;
       Send(channel, picture.utime, time + latency, picture);
     }
   }

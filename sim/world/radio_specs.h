@@ -28,6 +28,27 @@ struct GnssErrorSpec {
   }
 };
 
+/// Spells of a large position error, as street canyons give: each rises and falls within `rise_s`,
+/// in a direction and to a size of its own.
+struct ErrorBurstSpec {
+  double every_s = 0.0;  ///< Mean time from one to the next, drawn per sender; 0 = none.
+  double lasts_s = 5.0;
+  double low_m = 3.0;
+  double high_m = 8.0;
+  double rise_s = 0.5;
+  bool is_reported = true;  ///< The reported accuracy follows.
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("every_s", every_s, {.at_least = 0.0, .at_most = 1e5});
+    a.Field("lasts_s", lasts_s, {.above = 0.0, .at_most = 1e5});
+    a.Field("low_m", low_m, {.at_least = 0.0, .at_most = 1e3});
+    a.Field("high_m", high_m, {.at_least = 0.0, .at_most = 1e3});
+    a.Field("rise_s", rise_s, {.at_least = 0.0, .at_most = 1e3});
+    a.Field("is_reported", is_reported);
+  }
+};
+
 /// What every sender does unless its own `sender` block says otherwise.
 struct BsmSpec {
   double rate_hz = 10.0;
@@ -40,7 +61,16 @@ struct BsmSpec {
   double heading_markov_rad = FromDegrees(0.4);
   double heading_white_rad = FromDegrees(0.2);
   double semi_major_m = 0.0;  ///< Reported accuracy; 0 = what the error model gives.
-  bool own_echo = false;      ///< The ego's own messages come back, too.
+  ErrorBurstSpec bursts;
+  double pair_share = 0.0;                ///< Of the messages: followed by one more 50 ms later.
+  double identity_change_s = 0.0;         ///< All take a new identity once, this late ...
+  double identity_change_spread_s = 0.0;  ///< ... or up to so much later; 0, 0 = never.
+  double long_reference_m =
+      0.0;  ///< Vehicles above 10 m tell of a point so far before their centre.
+  double leap_second_at_s =
+      0.0;                ///< For one second from then on secMark is 60000 and more; 0 = never.
+  bool sparse = false;    ///< All that J2735 lets be unavailable is.
+  bool own_echo = false;  ///< The ego's own messages come back, too.
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -54,6 +84,14 @@ struct BsmSpec {
     a.Degrees("heading_markov_deg", heading_markov_rad, {.at_least = 0.0, .at_most = 180.0});
     a.Degrees("heading_white_deg", heading_white_rad, {.at_least = 0.0, .at_most = 180.0});
     a.Field("semi_major_m", semi_major_m, {.at_least = 0.0, .at_most = 12.65});
+    a.Field("bursts", bursts);
+    a.Field("pair_share", pair_share, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("identity_change_s", identity_change_s, {.at_least = 0.0, .at_most = 1e5});
+    a.Field("identity_change_spread_s", identity_change_spread_s,
+            {.at_least = 0.0, .at_most = 1e5});
+    a.Field("long_reference_m", long_reference_m, {.at_least = -15.0, .at_most = 15.0});
+    a.Field("leap_second_at_s", leap_second_at_s, {.at_least = 0.0, .at_most = 1e5});
+    a.Field("sparse", sparse);
     a.Field("own_echo", own_echo);
   }
 };
@@ -67,6 +105,8 @@ struct RadioSpec {
   double building_factor = 2.0;  ///< Length factor of a path through buildings.
   double vehicle_factor = 1.3;   ///< ... past a truck or bus.
   double tx_power_dbm = 20.0;
+  double gap_every_s = 0.0;  ///< Mean time between two silences of a sender; 0 = none.
+  double gap_max_s = 7.0;    ///< Longest silence; most are short: this times u^4, u uniform.
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -76,6 +116,8 @@ struct RadioSpec {
     a.Field("building_factor", building_factor, {.at_least = 1.0, .at_most = 100.0});
     a.Field("vehicle_factor", vehicle_factor, {.at_least = 1.0, .at_most = 100.0});
     a.Field("tx_power_dbm", tx_power_dbm, {.at_least = -50.0, .at_most = 40.0});
+    a.Field("gap_every_s", gap_every_s, {.at_least = 0.0, .at_most = 1e5});
+    a.Field("gap_max_s", gap_max_s, {.above = 0.0, .at_most = 1e3});
   }
 };
 
@@ -86,6 +128,7 @@ struct SenderSpec {
   double bias_north_m = 0.0;
   double noise_scale = 1.0;  ///< Of all this sender's GNSS errors.
   double latency_scale = 1.0;
+  double semi_major_m = 0.0;       ///< Reported accuracy; 0 = as in `bsm`.
   double identity_change_s = 0.0;  ///< Takes a new TemporaryID and certificate then; 0 = never.
 
   template <class Archive>
@@ -95,6 +138,7 @@ struct SenderSpec {
     a.Field("bias_north_m", bias_north_m, {.at_least = -1e3, .at_most = 1e3});
     a.Field("noise_scale", noise_scale, {.at_least = 0.0, .at_most = 100.0});
     a.Field("latency_scale", latency_scale, {.at_least = 0.0, .at_most = 20.0});
+    a.Field("semi_major_m", semi_major_m, {.at_least = 0.0, .at_most = 12.7});
     a.Field("identity_change_s", identity_change_s, {.at_least = 0.0, .at_most = 1e5});
   }
 };

@@ -104,6 +104,7 @@ struct DriveSpec {
   double speed_mps = 13.0;
   double accel_mps2 = 1.8;
   double decel_mps2 = 2.2;
+  bool reverse = false;             ///< Drives backwards: the front looks back along the route.
   double lateral_mps2 = 2.2;        ///< Bends are taken no faster than this allows.
   std::vector<SpeedSpec> speeds{};  ///< Later wishes, in order of time.
   std::vector<StopSpec> stops{};    ///< In order of distance.
@@ -117,6 +118,7 @@ struct DriveSpec {
     a.Field("speed_mps", speed_mps, {.at_least = 0.0, .at_most = 70.0});
     a.Field("accel_mps2", accel_mps2, {.above = 0.0, .at_most = 8.0});
     a.Field("decel_mps2", decel_mps2, {.above = 0.0, .at_most = 9.0});
+    a.Field("reverse", reverse);
     a.Field("lateral_mps2", lateral_mps2, {.above = 0.0, .at_most = 8.0});
     a.Field("speeds", speeds);
     a.Field("stops", stops);
@@ -186,6 +188,18 @@ struct ParkedSpec {
     a.Field("x_m", x_m, {.at_least = -1e5, .at_most = 1e5});
     a.Field("y_m", y_m, {.at_least = -1e5, .at_most = 1e5});
     a.Degrees("yaw_deg", yaw_rad, {.at_least = -360.0, .at_most = 360.0});
+  }
+};
+
+/// How many of the parked vehicles talk, and how.
+struct ParkedSendersSpec {
+  double share = 0.0;  ///< Drawn per vehicle.
+  SenderSpec sender;
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("share", share, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("sender", sender);
   }
 };
 
@@ -272,6 +286,7 @@ struct Scenario {
   std::string trajectories;
   double v2v_share = 0.0;  ///< Of the vehicles in `trajectories`, drawn per id.
   std::vector<ParkedSpec> parked;
+  ParkedSendersSpec parked_senders;
   std::vector<BuildingSpec> buildings;
   std::vector<PoleSpec> poles;
   std::vector<PoleRowSpec> pole_rows;
@@ -301,6 +316,7 @@ struct Scenario {
     a.Text("trajectories", trajectories);
     a.Field("v2v_share", v2v_share, {.at_least = 0.0, .at_most = 1.0});
     a.Field("parked", parked);
+    a.Field("parked_senders", parked_senders);
     a.Field("buildings", buildings);
     a.Field("poles", poles);
     a.Field("pole_rows", pole_rows);

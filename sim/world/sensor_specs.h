@@ -18,6 +18,8 @@ struct SensorsSpec {
   double noise_scale = 1.0;       ///< Of every radar and camera sigma.
   double clutter_scale = 1.0;     ///< Of the sensors' own clutter rates.
   double ghost_scale = 1.0;       ///< Of mirror and double-bounce ghosts; 0 = none.
+  double detection_scale = 1.0;   ///< Of every detection probability.
+  double frame_loss = 0.0;        ///< Share of whole radar scans and pictures that never arrive.
   double radar_latency_s = 0.02;  ///< Shortest; stamp to arrival.
   double radar_latency_spread_s = 0.02;
   double camera_latency_s = 0.06;
@@ -30,6 +32,8 @@ struct SensorsSpec {
     a.Field("noise_scale", noise_scale, {.at_least = 0.0, .at_most = 20.0});
     a.Field("clutter_scale", clutter_scale, {.at_least = 0.0, .at_most = 100.0});
     a.Field("ghost_scale", ghost_scale, {.at_least = 0.0, .at_most = 10.0});
+    a.Field("detection_scale", detection_scale, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("frame_loss", frame_loss, {.at_least = 0.0, .at_most = 1.0});
     a.Field("radar_latency_s", radar_latency_s, {.at_least = 0.0, .at_most = 1.0});
     a.Field("radar_latency_spread_s", radar_latency_spread_s, {.at_least = 0.0, .at_most = 1.0});
     a.Field("camera_latency_s", camera_latency_s, {.at_least = 0.0, .at_most = 1.0});

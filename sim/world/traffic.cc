@@ -85,9 +85,10 @@ VehicleSpec DrawVehicle(const TrafficSpec& traffic, Random& random) {
   spec.drive.start_m = random.Uniform(lane.from_m, lane.to_m);
   const double kind = random.Uniform();
   const double light = random.Uniform();
+  const double bus_share = traffic.bus_share > 0.0 ? traffic.bus_share : lane.bus_share;
   if (kind < lane.truck_share) {
     spec.object_class = ObjectClass::kTruck;
-  } else if (kind < lane.truck_share + lane.bus_share) {
+  } else if (kind < lane.truck_share + bus_share) {
     spec.object_class = ObjectClass::kBus;
   } else if (light < traffic.van_share) {
     spec.object_class = ObjectClass::kVan;

@@ -43,6 +43,7 @@ struct TrafficSpec {
   double v2v_share = 0.5;
   double van_share = 0.1;          ///< Of those who are neither truck nor bus.
   double motorcycle_share = 0.05;  ///< The same.
+  double bus_share = 0.0;          ///< Instead of the lanes' own; 0 = theirs.
   double truck_length_m = 0.0;     ///< 0 = the class's usual length.
   double bus_length_m = 0.0;
   double gap_m = 8.0;  ///< Free way before and behind.
@@ -57,6 +58,7 @@ struct TrafficSpec {
     a.Field("v2v_share", v2v_share, {.at_least = 0.0, .at_most = 1.0});
     a.Field("van_share", van_share, {.at_least = 0.0, .at_most = 1.0});
     a.Field("motorcycle_share", motorcycle_share, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("bus_share", bus_share, {.at_least = 0.0, .at_most = 1.0});
     a.Field("truck_length_m", truck_length_m, {.at_least = 0.0, .at_most = 30.0});
     a.Field("bus_length_m", bus_length_m, {.at_least = 0.0, .at_most = 30.0});
     a.Field("gap_m", gap_m, {.at_least = 0.5, .at_most = 200.0});

@@ -76,10 +76,12 @@ Trajectory Trajectory::Drive(const Path& path, const DriveSpec& drive, double le
   // on both sides of the run.
   constexpr int kLead = 50;
   const int steps = static_cast<int>(std::ceil(duration_s / kStep_s)) + 1;
-  const double front_m = centre_ahead_m + 0.5 * length_m;  // Bumper ahead of the axle.
+  // Along the way driven: backwards the rear bumper leads, and the axle is ahead of the centre.
+  const double centre_m = drive.reverse ? -centre_ahead_m : centre_ahead_m;
+  const double front_m = centre_m + 0.5 * length_m;  // Leading bumper ahead of the axle.
   const SpeedLimit limit(path, drive);
   std::vector<double> s(static_cast<std::size_t>(steps + 2 * kLead));
-  double place = drive.start_m - centre_ahead_m;
+  double place = drive.start_m - centre_m;
   std::size_t next_stop = 0;
   // Fastest speed that bends and the next stop allow here and now.
   const auto allowed_at = [&](double time) {
@@ -135,7 +137,8 @@ Trajectory Trajectory::Drive(const Path& path, const DriveSpec& drive, double le
       motion.yaw_rad += std::atan2(offset_mps, along_mps * (1.0 - point.curvature_per_m * offset));
     }
     motion.centre = point.position + offset * LeftOf(Direction(point.yaw_rad)) +
-                    centre_ahead_m * Direction(motion.yaw_rad);
+                    centre_m * Direction(motion.yaw_rad);
+    if (drive.reverse) motion.yaw_rad += kPi;
   }
   result.Differentiate();
   return result;

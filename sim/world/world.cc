@@ -13,7 +13,10 @@ namespace v2vouch::sim {
 namespace {
 
 constexpr double kPostSpacing_m = 2.0;
-constexpr std::uint64_t kSubjectV2vShare = 0x5632565368617265ull;  // Per vehicle id.
+// Each of a vehicle's draws has a subject of its own: this plus its id.
+constexpr std::uint64_t kSubjectV2vShare = 0x5632565368617265ull;
+constexpr std::uint64_t kSubjectParkedShare = 0x5061726B65640000ull;
+constexpr std::uint64_t kSubjectIdentity = 0x4964656E74690000ull;
 
 std::map<std::string, Path> MakePaths(const Scenario& scenario,
                                       std::vector<std::string>& problems) {
@@ -105,6 +108,9 @@ std::unique_ptr<World> World::Make(const Scenario& scenario, std::uint64_t seed,
     actor.id = spec.id;
     actor.object_class = spec.object_class;
     actor.size = UsualSize(spec.object_class);
+    actor.has_v2v = Random::ForSubject(seed, kSubjectParkedShare + spec.id)
+                        .Bernoulli(scenario.parked_senders.share);
+    actor.sender = scenario.parked_senders.sender;
     actor.trajectory = Trajectory::Stand({spec.x_m, spec.y_m}, spec.yaw_rad);
     world->actors_.push_back(actor);
   }
@@ -128,6 +134,13 @@ std::unique_ptr<World> World::Make(const Scenario& scenario, std::uint64_t seed,
       problems.push_back("vehicle id " + std::to_string(world->actors_[i].id) + " is taken twice");
       return nullptr;
     }
+  }
+  const BsmSpec& bsm = scenario.bsm;
+  for (Actor& actor : world->actors_) {
+    if (bsm.identity_change_s + bsm.identity_change_spread_s <= 0.0) break;
+    if (actor.sender.identity_change_s > 0.0) continue;
+    const double lot = Random::ForSubject(seed, kSubjectIdentity + actor.id).Uniform();
+    actor.sender.identity_change_s = bsm.identity_change_s + lot * bsm.identity_change_spread_s;
   }
   for (const BuildingSpec& building : scenario.buildings) {
     world->walls_.push_back(MakeWall(building));
