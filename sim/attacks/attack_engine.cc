@@ -182,13 +182,14 @@ void AttackEngine::Speak(Liar& liar, Voice& voice, const Message& message,
     }
     said.is_attacker = said.is_attacker || attack.kind == AttackSpec::Kind::kAttack;
     const EgoTruth ego = world_.At(said.time_s).ego;
-    Circumstances now{said.time_s, 0.0, ego.speed_mps, liar.actor, scene_->views};
+    Circumstances now{said.time_s, 0.0, 0, ego.speed_mps, liar.actor, scene_->views};
     if (!voice.gate.Update(now)) {
       for (Change& change : voice.changes) change.Watch(said);
       if (voice.is_own && !is_device) sent.push_back(said);
       return;
     }
     now.since_attack_s = voice.gate.elapsed_s();
+    now.attack_spell = voice.gate.spell();
     if (copy == 0) {
       for (Change& change : voice.changes) times *= change.Times(now);
     }

@@ -86,7 +86,7 @@ void Flood::Run(double until_s, std::vector<RawMessage>& sent) {
   for (;; ++next_) {
     const double time = static_cast<double>(next_) / spec_.per_s;
     if (time >= until_s) return;
-    if (gate_.Update({time, 0.0, world_.At(time).ego.speed_mps, {}, nullptr})) {
+    if (gate_.Update({time, 0.0, 0, world_.At(time).ego.speed_mps, {}, nullptr})) {
       sent.push_back(Make(time));
     }
   }

@@ -18,11 +18,16 @@ bool Gate::Begins(const Circumstances& now) const {
 }
 
 bool Gate::Update(const Circumstances& now) {
+  if (now.attack_spell != attack_spell_) {
+    began_s_.reset();
+    spell_ = -1;
+    attack_spell_ = now.attack_spell;
+  }
   if (!began_s_ && Begins(now)) began_s_ = now.time_s;
   if (!began_s_ || (when_.stop_s > 0.0 && now.time_s >= when_.stop_s)) return false;
   const double since = now.time_s - *began_s_;
   const double cycle = when_.active_s + when_.pause_s;
-  const double spell = cycle > 0.0 ? std::floor(since / cycle) : 0.0;
+  const int spell = cycle > 0.0 ? static_cast<int>(std::floor(since / cycle)) : 0;
   const double elapsed = since - spell * cycle;
   if (cycle > 0.0 && elapsed >= when_.active_s) return false;
   number_ = spell == spell_ ? number_ + 1 : 0;

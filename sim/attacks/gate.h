@@ -11,7 +11,8 @@ namespace v2vouch::sim {
 /// What a gate is asked about.
 struct Circumstances {
   double time_s = 0.0;
-  double since_attack_s = 0.0;  ///< Since the attack's spell began.
+  double since_attack_s = 0.0;  ///< Since the attack's spell began ...
+  int attack_spell = 0;         ///< ... and which one it is; with a new one blocks begin anew.
   double ego_speed_mps = 0.0;
   std::optional<std::size_t> actor;     ///< The vehicle spoken for, an index into World::actors().
   const ViewTimeline* views = nullptr;  ///< There when a gate needs it.
@@ -27,6 +28,7 @@ class Gate {
 
   [[nodiscard]] double elapsed_s() const { return elapsed_s_; }
   [[nodiscard]] int number() const { return number_; }  ///< Messages before this one.
+  [[nodiscard]] int spell() const { return spell_; }
 
   /// Whether the spec asks for a ViewTimeline.
   static bool NeedsViews(const WhenSpec& when) {
@@ -38,7 +40,8 @@ class Gate {
 
   WhenSpec when_;
   std::optional<double> began_s_;
-  double spell_ = -1.0;
+  int spell_ = -1;
+  int attack_spell_ = 0;
   double elapsed_s_ = 0.0;
   int number_ = 0;
 };

@@ -65,7 +65,7 @@ std::optional<std::size_t> ChooseVictim(const AttackSpec& attack, const AttackSc
     if (scene.views == nullptr) continue;
     const bool by_hiding = path.shadow && path.shadow->gets_hidden;
     const double score_s =
-        by_hiding ? scene.views->LongestHidden(i) : scene.views->LongestInView(i);
+        by_hiding ? scene.views->LongestHidden(i) : scene.views->LongestDriving(i);
     if (score_s <= best_s) continue;
     best_s = score_s;
     best = i;

@@ -17,7 +17,7 @@ bool NeedsViews(const AttackSpec& attack);
 /// many, rounded, one at least, by an order drawn from the seed alone.
 std::vector<std::size_t> ChooseAttackers(const WhoSpec& who, const AttackScene& scene);
 
-/// The vehicle a shadow follows or a grid surrounds; ties go to the lower id.
+/// The vehicle a shadow follows or a grid surrounds, one that drives; ties go to the lower id.
 /// @return nullopt with a note when there is none, or when the path needs none.
 std::optional<std::size_t> ChooseVictim(const AttackSpec& attack, const AttackScene& scene,
                                         std::vector<std::string>& notes);

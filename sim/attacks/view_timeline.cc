@@ -17,6 +17,7 @@ constexpr double kFarthest_m = 100.0;
 constexpr double kReach_m = 150.0;
 constexpr double kGap_s = 0.5;
 constexpr double kViewBefore_s = 2.0;
+constexpr double kDriving_mps = 2.0;
 
 struct Look {
   bool by_radar = false;
@@ -40,8 +41,7 @@ ViewTimeline::ViewTimeline(const World& world, std::uint64_t seed) {
   const std::size_t n = world.actors().size();
   const auto steps = static_cast<std::size_t>(world.scenario().duration_s / kStep_s) + 2;
   cells_.assign(n, std::vector<Cell>(steps));
-  longest_view_.assign(n, 0.0);
-  longest_hidden_.assign(n, 0.0);
+  longest_.assign(n, {});
   std::vector<double> unseen_s(n, 0.0);
   std::vector<Sight> sights;
   std::vector<Look> looks;
@@ -81,9 +81,13 @@ ViewTimeline::ViewTimeline(const World& world, std::uint64_t seed) {
         cell.in_view_s = 0.0f;
       }
       cell.hidden_s = is_hidden ? cell.hidden_s + static_cast<float>(kStep_s) : 0.0f;
-      longest_view_[a] = std::max(longest_view_[a], static_cast<double>(cell.in_view_s));
+      Longest& longest = longest_[a];
+      const auto in_view_s = static_cast<double>(cell.in_view_s);
+      longest.in_view_s = std::max(longest.in_view_s, in_view_s);
+      if (std::abs(state.motion.speed_mps) < kDriving_mps) continue;
+      longest.driving_s = std::max(longest.driving_s, in_view_s);
       if (std::max(cell.in_view_s, cell.last_view_s) >= kViewBefore_s) {
-        longest_hidden_[a] = std::max(longest_hidden_[a], static_cast<double>(cell.hidden_s));
+        longest.hidden_s = std::max(longest.hidden_s, static_cast<double>(cell.hidden_s));
       }
     }
   }

@@ -22,10 +22,11 @@ class ViewTimeline {
   /// Length of the joint view before the one that is on, or that ended last.
   [[nodiscard]] double LastViewFor(std::size_t actor, double time_s) const;
 
-  /// Over the whole run: the longest joint view, and the longest time hidden right after a joint
-  /// view of 2 s at least.
-  [[nodiscard]] double LongestInView(std::size_t actor) const { return longest_view_[actor]; }
-  [[nodiscard]] double LongestHidden(std::size_t actor) const { return longest_hidden_[actor]; }
+  /// Over the whole run: the longest joint view; the longest at the end of which it drives faster
+  /// than 2 m/s; and the longest time hidden, driving so, after a joint view of 2 s at least.
+  [[nodiscard]] double LongestInView(std::size_t actor) const { return longest_[actor].in_view_s; }
+  [[nodiscard]] double LongestDriving(std::size_t actor) const { return longest_[actor].driving_s; }
+  [[nodiscard]] double LongestHidden(std::size_t actor) const { return longest_[actor].hidden_s; }
 
  private:
   struct Cell {
@@ -33,10 +34,15 @@ class ViewTimeline {
     float hidden_s = 0.0f;
     float last_view_s = 0.0f;
   };
+  struct Longest {
+    double in_view_s = 0.0;
+    double driving_s = 0.0;
+    double hidden_s = 0.0;
+  };
   [[nodiscard]] const Cell& At(std::size_t actor, double time_s) const;
 
   std::vector<std::vector<Cell>> cells_;  ///< By actor, then step.
-  std::vector<double> longest_view_, longest_hidden_;
+  std::vector<Longest> longest_;
 };
 
 }  // namespace v2vouch::sim

@@ -60,13 +60,12 @@ struct GhostSpec {
 
 /// Speaks for a real vehicle, as if from aboard: seen by other means, a little late and noisy.
 struct ShadowSpec {
-  std::uint32_t vehicle =
-      0;                 ///< 0 = the one longest in joint view of those with `has_v2v` and so on.
-  bool has_v2v = false;  ///< Of vehicles that talk, or of those that do not.
-  bool gets_hidden = false;  ///< Only of those that later get hidden; the longest hidden one.
-  int count = 1;             ///< Identities, each with a noise of its own.
-  double delay_s = 0.3;      ///< Age of what is said; stamps are fresh.
-  double noise_m = 0.7;      ///< Gauss-Markov per axis, time constant 5 s.
+  std::uint32_t vehicle = 0;  ///< 0 = the driving one longest in joint view, of the kind below.
+  bool has_v2v = false;       ///< Of vehicles that talk, or of those that do not.
+  bool gets_hidden = false;   ///< Only of those that later get hidden; the longest hidden one.
+  int count = 1;              ///< Identities, each with a noise of its own.
+  double delay_s = 0.3;       ///< Age of what is said; stamps are fresh.
+  double noise_m = 0.7;       ///< Gauss-Markov per axis, time constant 5 s.
   double semi_major_m = 0.5;
 
   template <class Archive>
@@ -85,7 +84,7 @@ struct ShadowSpec {
 /// GridSybil).
 struct GridSpec {
   enum class Round { kAttacker, kEgo, kVehicle };
-  Round round = Round::kAttacker;  ///< kVehicle: the real one longest in joint view.
+  Round round = Round::kAttacker;  ///< kVehicle: the driving one longest in joint view.
   int count = 5;
   double along_m = 5.0;        ///< Free way between them; one vehicle length comes on top.
   double across_m = 2.0;       ///< The same to the side.

@@ -151,5 +151,117 @@ TEST(BsmSender, ErrorsHaveTheConfiguredSize) {
   EXPECT_NEAR(std::sqrt(bias / pairs), std::sqrt(1.0 + 0.5 * 0.09), 0.1);
 }
 
+// Conditions (BsmSpec, RadioSpec): each does what its key says, on a car without other errors.
+std::vector<bsm_t> Heard(Scenario scenario, int messages) {
+  scenario.radio.half_range_m = 1e4;
+  const auto world = MakeWorld(scenario);
+  BsmSender sender(*world, 0, 9);
+  std::vector<bsm_t> heard;
+  for (int i = 0; i < messages; ++i) {
+    if (const auto bsm = sender.Next()) heard.push_back(*bsm);
+  }
+  return heard;
+}
+
+TEST(BsmSender, PairsComeFiftyMillisecondsApartAndCountOn) {
+  Scenario scenario = OneSender();
+  scenario.bsm.pair_share = 0.3;
+  scenario.bsm.latency_spread_s = 0.0;
+  scenario.bsm.period_jitter_s = 0.0;
+  const auto heard = Heard(scenario, 500);
+  int pairs = 0;
+  for (std::size_t i = 1; i < heard.size(); ++i) {
+    const auto apart = heard[i].rx_utime - heard[i - 1].rx_utime;
+    EXPECT_TRUE(std::abs(apart - 50000) <= 2 || std::abs(apart - 100000) <= 2) << apart;
+    EXPECT_EQ(heard[i].msgCnt, (heard[i - 1].msgCnt + 1) % 128);
+    const bool is_second = apart < 60000;
+    pairs += is_second ? 1 : 0;
+  }
+  // A pair is two gaps of 50 ms: 0.3 / 1.3 of the messages are seconds.
+  EXPECT_NEAR(pairs / 500.0, 2.0 * 0.3 / 1.3, 0.12);
+}
+
+TEST(BsmSender, SilencesAreAsLongAsGivenAtMost) {
+  Scenario scenario = OneSender();
+  scenario.radio.gap_every_s = 5.0;
+  scenario.radio.gap_max_s = 4.0;
+  scenario.bsm.latency_spread_s = 0.0;
+  const auto heard = Heard(scenario, 3000);
+  std::int64_t longest = 0;
+  for (std::size_t i = 1; i < heard.size(); ++i) {
+    longest = std::max(longest, heard[i].rx_utime - heard[i - 1].rx_utime);
+  }
+  EXPECT_GT(longest, 1500000);
+  EXPECT_LT(longest, 4200000);
+  EXPECT_LT(heard.size(), 2900u);  // Mean silence 4 m / 5 of u^4: 0.8 s in 5.8 s.
+  EXPECT_GT(heard.size(), 2200u);
+}
+
+TEST(BsmSender, ErrorBurstsHaveTheirSizeAndMayBeReported) {
+  Scenario scenario = OneSender();
+  scenario.bsm.bursts = {.every_s = 10.0, .lasts_s = 5.0, .low_m = 3.0, .high_m = 8.0};
+  scenario.bsm.semi_major_m = 0.5;
+  const auto world = MakeWorld(scenario);
+  BsmSender sender(*world, 0, 9);
+  double largest = 0.0;
+  int off = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto message = sender.NextMessage();
+    ASSERT_TRUE(message.has_value());
+    const double error = message->error.norm();
+    largest = std::max(largest, error);
+    off += error > 2.9 ? 1 : 0;
+    EXPECT_NEAR(message->said.semi_major_m, std::hypot(0.5, error), 1e-9);
+  }
+  EXPECT_GT(largest, 6.0);
+  EXPECT_LE(largest, 8.0);
+  EXPECT_NEAR(off / 3000.0, 5.0 / 16.0, 0.12);  // 5 s in 10 s and 6 s.
+}
+
+TEST(BsmSender, LongVehiclesTellOfThePointTheyAreToldTo) {
+  Scenario scenario = OneSender();
+  scenario.bsm.long_reference_m = 6.0;
+  scenario.vehicles[0].length_m = 18.0;
+  const auto world = MakeWorld(scenario);
+  BsmSender sender(*world, 0, 9);
+  const auto message = sender.NextMessage();
+  ASSERT_TRUE(message.has_value());
+  const Motion motion = world->actors()[0].trajectory.At(message->time_s);
+  EXPECT_NEAR((message->said.centre - motion.centre - 6.0 * Direction(motion.yaw_rad)).norm(), 0.0,
+              1e-9);
+}
+
+TEST(BsmSender, SparseMessagesSayWhatJ2735SaysForUnavailable) {
+  Scenario scenario = OneSender();
+  scenario.bsm.sparse = true;
+  const auto heard = Heard(scenario, 5);
+  ASSERT_FALSE(heard.empty());
+  EXPECT_EQ(heard[0].elev, -4096);
+  EXPECT_EQ(heard[0].semiMajor, 255);
+  EXPECT_EQ(heard[0].accelSet_long, 2001);
+  EXPECT_EQ(heard[0].length, 0);
+  EXPECT_EQ(heard[0].wheelBrakes, 16);
+  EXPECT_LT(heard[0].speed, 8191);  // What nobody can do without stays.
+}
+
+TEST(BsmSender, ALeapSecondCountsOnBeyondSixtyThousand) {
+  Scenario scenario = OneSender();
+  scenario.start_utc_s = 1781510440;  // 20 s before a minute.
+  scenario.bsm.leap_second_at_s = 20.0;
+  scenario.bsm.latency_spread_s = 0.0;
+  int leap = 0;
+  for (const bsm_t& bsm : Heard(scenario, 300)) {
+    const auto position_utime = bsm.rx_utime - 70000;
+    const double into = 1e-6 * static_cast<double>(position_utime) - 1781510460.0;
+    if (into >= 0.001 && into < 0.999) {
+      ++leap;
+      EXPECT_NEAR(bsm.secMark, 60000.0 + 1000.0 * into, 1.0);
+    } else {
+      EXPECT_LT(bsm.secMark, 60001);
+    }
+  }
+  EXPECT_NEAR(leap, 10, 1);
+}
+
 }  // namespace
 }  // namespace v2vouch::sim

@@ -215,6 +215,31 @@ INSTANTIATE_TEST_SUITE_P(Some, UnderAttack,
                          testing::Values("A01_ahead_30m", "A05_lateral_8m", "A11_grid_5",
                                          "A12_three_ids", "A22_malformed_5000"));
 
+TEST(Simulation, LostFramesAndWeakDetectionThinTheSensors) {
+  Scenario scenario;
+  std::vector<std::string> problems;
+  ASSERT_TRUE(LoadScenario("sim/scenarios/smoke.yaml", scenario, problems));
+  scenario.sensors.mode = SensorMode::kIdealPoints;
+  const auto count = [&](double lost, double scale) {
+    scenario.sensors.frame_loss = lost;
+    scenario.sensors.detection_scale = scale;
+    const auto world = World::Make(scenario, 5, problems);
+    std::pair<int, int> frames_and_detections{0, 0};
+    for (const SimEvent& event : AllEvents(*world, 5)) {
+      if (event.channel != "RADAR_FRONT") continue;
+      ++frames_and_detections.first;
+      frames_and_detections.second += As<radar_scan_t>(event).num_detections;
+    }
+    return frames_and_detections;
+  };
+  const auto all = count(0.0, 1.0);
+  const auto lossy = count(0.3, 1.0);
+  const auto weak = count(0.0, 0.5);
+  EXPECT_NEAR(lossy.first, 0.7 * all.first, 15.0);  // Three sigma of 120 draws.
+  EXPECT_EQ(weak.first, all.first);
+  EXPECT_NEAR(weak.second, 0.5 * all.second, 0.12 * all.second);
+}
+
 TEST(LeftTurn, CriticalCarIsSeenLongThenHiddenThreeToFiveSecondsThenSeenAgain) {
   const auto world = Shipped("left_turn", 1);
   std::vector<std::pair<double, bool>> hidden;

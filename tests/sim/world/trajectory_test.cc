@@ -103,5 +103,23 @@ TEST(LoadTrajectories, NamesTheBadRow) {
   std::filesystem::remove(path);
 }
 
+TEST(Drive, InReverseTheFrontLooksBackAndTheRearBumperLeads) {
+  Path path;
+  std::string problem;
+  ASSERT_TRUE(Path::Make({{{0.0, 0.0}, 10.0}, {{200.0, 0.0}, 10.0}}, path, problem));
+  DriveSpec drive;
+  drive.start_m = 20.0;
+  drive.speed_mps = 3.0;
+  drive.reverse = true;
+  drive.stops = {{60.0, 1000.0}};
+  const Trajectory backwards = Trajectory::Drive(path, drive, 4.5, 1.26, 40.0);
+  EXPECT_NEAR(backwards.At(0.0).centre.x(), 20.0, 1e-6);
+  const Motion middle = backwards.At(5.0);
+  EXPECT_NEAR(middle.centre.x(), 35.0, 1e-6);
+  EXPECT_NEAR(std::abs(WrapAngle(middle.yaw_rad)), kPi, 1e-9);
+  EXPECT_NEAR(middle.speed_mps, -3.0, 1e-6);
+  EXPECT_NEAR(backwards.At(39.0).centre.x() + 2.25, 60.0, 0.05);  // The rear bumper at the stop.
+}
+
 }  // namespace
 }  // namespace v2vouch::sim
