@@ -64,6 +64,22 @@ TEST_F(V2vouchCampaign, ShardsMergedGiveTheFiguresOfTheWhole) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "whole/tmp"));
 }
 
+// The short form of the ghost study: what no sensor ever confirmed is not published.
+TEST_F(V2vouchCampaign, NoGhostIsPublishedInTheShortStudy) {
+  ASSERT_EQ(ExitCode("--ghosts-only --scenarios campaign_urban --seeds 1 --first-seed 11 --jobs 2 "
+                     "--json --out " +
+                         Path("g"),
+                     "g.json"),
+            0)
+      << Content("err");
+  const std::string figures = Content("g.json");
+  std::size_t attacks = 0;
+  for (const char* id : {"A1", "A2", "A3", "A4"}) {
+    attacks += figures.find("{\"id\":\"" + std::string(id) + "\",\"runs\":") != std::string::npos;
+  }
+  EXPECT_EQ(attacks, 4u) << figures;
+}
+
 TEST_F(V2vouchCampaign, AnotherConfigurationWantsAnotherFolder) {
   ASSERT_EQ(ExitCode(tiny_ + "--out " + Path("x")), 0);
   std::ofstream(folder_ / "own.yaml") << "v2v: {max_age_s: 1.0}\n";
