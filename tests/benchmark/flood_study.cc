@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a radio flood costs. One drive among ten cars, of which every third speaks, is stepped with
-// and without each flood; printed are the time of an own frame's step (median, p99) with its ratio
-// to the same frames without the flood, the time of a BSM's step (mean, p99), how much of one core
-// a second of input takes, and what became of the senders.
+// and without each flood; printed are the processor time of an own frame's step (median, p99) with
+// its ratio to the same frames without the flood, the time of a BSM's step (mean, p99), how much of
+// one core a second of input takes, and what became of the senders.
 //
 // The flood begins after ten seconds, when the senders that can be validated are.
 //
@@ -11,9 +11,10 @@
 //                                      takes before the frames' p99 exceeds 5 ms or the core is
 //                                      full
 //
-// Run it by hand on an idle machine; ctest only sees that it runs.
+// ctest only sees that it runs.
+#include <time.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -62,6 +63,13 @@ testing::SyntheticDrive Traffic(double duration_s) {
   return drive;
 }
 
+// Of this thread alone: what else the machine does costs nobody anything here.
+double CpuTime_us() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
 double Quantile(std::vector<double>& values, double q) {
   if (values.empty()) return 0.0;
   const auto at =
@@ -93,22 +101,21 @@ Cost Measure(const Case& c, double duration_s, bool has_late_pictures, const Cos
   std::size_t priority = 0;
   const Timestamp from = testing::DriveStart() + FromSeconds(kFlood_s + 0.5);
   for (const Input& input : inputs) {
-    const auto before = std::chrono::steady_clock::now();
+    const double before_us = CpuTime_us();
     perception.Step(input, outputs);
-    const std::chrono::duration<double, std::micro> took =
-        std::chrono::steady_clock::now() - before;
+    const double took_us = CpuTime_us() - before_us;
     if (outputs.has_lists) priority = outputs.priority.tracks.size();
     if (HeaderOf(input).stamp < from) continue;
     if (outputs.has_lists) {
       most_priority = std::max(most_priority, priority);
       least_priority = std::min(least_priority, priority);
     }
-    total_us += took.count();
+    total_us += took_us;
     if (std::holds_alternative<Bsm>(input)) {
-      bsms_us.push_back(took.count());
+      bsms_us.push_back(took_us);
     } else if (std::holds_alternative<RadarScan>(input) ||
                std::holds_alternative<CameraDetections>(input)) {
-      frames_us.push_back(took.count());
+      frames_us.push_back(took_us);
     }
   }
   double bsm_mean = 0.0;
