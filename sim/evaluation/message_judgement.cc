@@ -59,14 +59,16 @@ std::vector<JudgedMessage> JudgeMessages(const RunLog& log) {
     JudgedMessage out;
     out.truth = i;
     out.is_false = IsFalse(m, senders);
-    out.is_in_view = view.Sees(m.stamp, m.claimed.p_W, m.vehicle);
+    const bool is_claim_in_view = view.Sees(m.stamp, m.claimed.p_W, m.vehicle);
     Eligibility& so_far = eligibility[m.sender];
-    if (out.is_in_view && so_far.was_in_view) {
+    if (is_claim_in_view && so_far.was_in_view) {
       so_far.seen_s += std::clamp(ToSeconds(m.stamp - so_far.last), 0.0, kLongestStep_s);
     }
     so_far.last = m.stamp;
-    so_far.was_in_view = out.is_in_view;
+    so_far.was_in_view = is_claim_in_view;
     out.is_eligible = so_far.seen_s >= kEligibleAfter_s;
+    out.is_in_view = is_claim_in_view || (out.is_eligible && m.vehicle != 0 &&
+                                          view.Sees(m.stamp, m.honest.p_W, m.vehicle));
     out.is_contested = !m.is_attacker && senders.IsUnderAttack(m.sender, m.stamp, kContested_s);
     if (const auto found = verdicts.find({m.stamp, m.seq}); found != verdicts.end()) {
       const BsmVerdict& verdict = *found->second;

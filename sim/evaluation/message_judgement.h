@@ -22,10 +22,12 @@ struct Falseness {
 
 /// One message of TRUTH_BSM, judged.
 struct JudgedMessage {
-  std::size_t truth = 0;       ///< Index into RunLog::bsm_truths.
-  bool is_false = false;       ///< The position, the speed, the heading, the age, the vehicle or
-                               ///< the identity is not the sender's own.
-  bool is_in_view = false;     ///< The claimed place is in joint view (JointView).
+  std::size_t truth = 0;  ///< Index into RunLog::bsm_truths.
+  bool is_false = false;  ///< The position, the speed, the heading, the age, the vehicle or
+                          ///< the identity is not the sender's own.
+  /// The claimed place is in joint view (JointView); or the id is eligible and the vehicle it
+  /// speaks for is: sensors that knew a car see that it has not gone where it says.
+  bool is_in_view = false;
   bool is_eligible = false;    ///< The sender id's claims were in joint view long enough before.
   bool is_contested = false;   ///< Honest, but an attacker uses the same id at the time.
   bool is_positive = false;    ///< Refused as misbehaviour, or mistrusted.

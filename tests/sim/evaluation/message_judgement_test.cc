@@ -83,6 +83,18 @@ TEST_F(Judgement, MessagesCountAfterTwoSecondsInJointView) {
   EXPECT_TRUE(judged[20].is_eligible);
 }
 
+TEST_F(Judgement, ACarThatWasValidatedAndClaimsToBeOutOfSightIsStillInView) {
+  scene_.log_.truth.objects.clear();
+  scene_.AddCar(2, {50.0, 0.0}, 0.0, kLiar);
+  AtTenHertz(0.0, 1.0, [&](double t) { Lie(t).claimed.p_W.x() = -60.0; });
+  EXPECT_FALSE(Last().is_in_view);  // Never seen where it says: nobody could have known it.
+  AtTenHertz(1.0, 4.0, [&](double t) { Lie(t); });
+  Lie(4.1).claimed.p_W.x() = -60.0;  // Behind the ego.
+  EXPECT_TRUE(Last().is_in_view);
+  scene_.AddCar(3, {20.0, 0.0});  // Now something stands before it.
+  EXPECT_FALSE(Last().is_in_view);
+}
+
 TEST_F(Judgement, OnlyRefusalsThatSpeakAgainstTheMessageArePositive) {
   for (const char* reason : {"bsm_stale", "bsm_repeat", "bsm_rate", "bsm_table_full"}) {
     scene_.Say(1.0, 11, kHonest, 1, kTrusted, reason);
