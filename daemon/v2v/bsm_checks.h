@@ -21,7 +21,8 @@ std::optional<Reason> ContentProblem(const Bsm& bsm);
 double ClaimedAge(const Bsm& bsm, const IntakeConfig& config);
 
 /// The claim of a BSM without content problem. A yaw rate that cannot be (over 1.5 rad/s, or
-/// over 12 m/s^2 sideways) is taken for none.
+/// over 12 m/s^2 sideways) is taken for none. In reverse the heading is read as the direction of
+/// motion; the intake turns it round where that would turn the vehicle.
 Claim ToClaim(const Bsm& bsm, double age_s, const IntakeConfig& config);
 
 /// The claim is our own: same place, speed and course, less the way since its time.

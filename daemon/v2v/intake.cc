@@ -20,6 +20,14 @@ std::size_t Remembered(const IntakeConfig& config) {
   return static_cast<std::size_t>(config.max_total_rate_hz * config.repeat_memory_s);
 }
 
+// In reverse some units tell the direction of motion, others that of the body. No vehicle turns
+// round between two messages: the reading that keeps its direction is meant.
+void ReadReverse(const Claim& last, Claim& claim) {
+  const bool is_reverse = std::signbit(claim.speed_mps);  // -0.0 where it stands in reverse gear.
+  if (!is_reverse || !claim.has_course || !last.has_course) return;
+  if (claim.course_E.dot(last.course_E) < 0.0) claim.course_E = -claim.course_E;
+}
+
 }  // namespace
 
 BsmIntake::BsmIntake(const IntakeConfig& config)
@@ -83,6 +91,7 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
       return Reason::kBsmRate;
     }
     account.tokens -= 1.0;
+    ReadReverse(senders_[index].latest, claim);
     if (!AdvanceSender(senders_[index], bsm, claim)) {
       Remove(index);
       return Reason::kSenderNumerics;

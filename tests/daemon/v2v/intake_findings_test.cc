@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "daemon/v2v/intake.h"
@@ -88,6 +89,28 @@ TEST_F(IntakeFindings, ACoreUnderTwoIdsIsHeldAgainstBothButAccusesNobody) {
   ASSERT_TRUE(next->finding);
   EXPECT_EQ(next->finding->check, "contested_core");
   HearFor(1.0);  // Told once.
+}
+
+// Two kinds of honest units: in reverse one tells where it moves, the other where it looks.
+TEST_F(IntakeFindings, BackingUpIsHonestWhicheverDirectionIsTold) {
+  for (const bool tells_body : {false, true}) {
+    BsmIntake intake{IntakeConfig{}};
+    TalkingCar car;
+    for (int i = 0; i < 200; ++i) {
+      car.speed_mps = i < 50 ? 0.0 : std::max(-3.0, -0.15 * (i - 50));  // Looks east.
+      car.Drive(0.1);
+      Bsm bsm = car.Say();
+      if (i >= 45) {  // The gear goes in while it still stands.
+        bsm.transmission = Transmission::kReverse;
+        bsm.course_rad = tells_body ? 0.0 : kPi;
+      }
+      const auto claim = intake.Accept(bsm, EgoAtCrossroads());
+      ASSERT_EQ(WhyNot(claim), kTaken);
+      EXPECT_FALSE(claim->finding) << claim->finding->check << " at " << i;
+      EXPECT_LE(claim->speed_mps, 0.0);
+      EXPECT_GT(claim->course_E.dot(EgoAtCrossroads().course_E), 0.99) << i;
+    }
+  }
 }
 
 TEST_F(IntakeFindings, TheGravestIsTold) {
