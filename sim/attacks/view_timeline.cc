@@ -15,7 +15,8 @@ constexpr double kLikely = 0.5;  // Before sensors.detection_scale.
 constexpr double kNearest_m = 5.0;
 constexpr double kFarthest_m = 100.0;
 constexpr double kReach_m = 150.0;
-constexpr double kGap_s = 0.5;
+constexpr double kAhead_rad = 35.0 / 180.0 * kPi;
+constexpr double kGap_s = 1.5;
 constexpr double kViewBefore_s = 2.0;
 constexpr double kDriving_mps = 2.0;
 
@@ -68,10 +69,13 @@ ViewTimeline::ViewTimeline(const World& world, std::uint64_t seed) {
     for (std::size_t i = 0; i < looks.size(); ++i) {
       const ActorState& state = snapshot.actors[i];
       const auto a = static_cast<std::size_t>(state.actor - world.actors().data());
-      const double range = (state.motion.centre - snapshot.ego.axle).norm();
+      const Vec2 way = state.motion.centre - snapshot.ego.axle;
+      const double range = way.norm();
+      const double bearing = AngleDifference(std::atan2(way.y(), way.x()), snapshot.ego.yaw_rad);
       const bool is_seen =
           looks[i].by_radar && looks[i].by_camera && range >= kNearest_m && range <= kFarthest_m;
-      const bool is_hidden = !looks[i].by_any && range <= kReach_m;
+      const bool is_hidden =
+          !looks[i].by_any && range <= kReach_m && std::abs(bearing) <= kAhead_rad;
       Cell& cell = cells_[a][k];
       unseen_s[a] = is_seen ? 0.0 : unseen_s[a] + kStep_s;
       if (is_seen) {

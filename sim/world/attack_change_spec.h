@@ -20,11 +20,10 @@ struct WhenSpec {
   double stop_s = 0.0;           ///< Of the scenario; 0 = never.
   double after_s = 0.0;          ///< Since the attack began; for blocks.
   double after_in_view_s = 0.0;  ///< The vehicle has been in joint view for so long.
-  double after_hidden_s =
-      0.0;                     ///< ... and then hidden from every sensor for so long; 0 = need not.
-  double ego_above_mps = 0.0;  ///< The ego drives faster.
-  double active_s = 0.0;       ///< At work so long, ...
-  double pause_s = 0.0;        ///< ... honest so long, again and again; 0 = without pause.
+  double after_hidden_s = 0.0;   ///< ... and then hidden ahead for so long; 0 = need not.
+  double ego_above_mps = 0.0;    ///< The ego drives faster.
+  double active_s = 0.0;         ///< At work so long, ...
+  double pause_s = 0.0;          ///< ... honest so long, again and again; 0 = without pause.
 
   template <class Archive>
   void Visit(Archive& a) {

@@ -13,7 +13,7 @@ constexpr std::uint64_t kSubjectTraffic = 0x5472616666696373ull;
 constexpr double kStep_s = 0.2;
 constexpr int kTries = 300;        // In a row, before the lanes count as full.
 constexpr double kBeside_m = 0.3;  // Free space on either side, less than any two lanes leave.
-constexpr double kNearSector_rad = kPi / 3.0;
+constexpr double kNearSector_rad = kPi / 6.0;
 
 // Footprints of one vehicle every kStep_s; those of a moment when it is not there are nowhere.
 using Way = std::vector<Box>;

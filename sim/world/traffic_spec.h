@@ -48,7 +48,7 @@ struct TrafficSpec {
   double bus_length_m = 0.0;
   double gap_m = 8.0;  ///< Free way before and behind.
   double near_m =
-      90.0;  ///< Near: within this distance before the ego, 60 degrees to either side ...
+      90.0;  ///< Near: within this distance before the ego, 30 degrees to either side ...
   double near_s = 0.0;  ///< ... for at least so long in all.
   std::vector<TrafficLaneSpec> lanes;
 

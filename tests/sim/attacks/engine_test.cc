@@ -127,7 +127,7 @@ TEST(AttackEngine, VictimsOfSpoofingAreNoAttackersAndHonestOdditiesNoAttack) {
   }
   int changed = 0;
   for (const auto& [device, identities] : ids) changed += identities.size() == 2 ? 1 : 0;
-  EXPECT_GE(changed, 2);  // Two V2V cars at least pass behind the lorry.
+  EXPECT_GE(changed, 1);  // Of the V2V cars that pass behind the lorry.
 }
 
 TEST(AttackEngine, AnImpersonatorBearsItsVictimsIdWhileThatGoesOn) {
