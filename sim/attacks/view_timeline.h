@@ -11,8 +11,8 @@ namespace v2vouch::sim {
 /// How long each vehicle has been in joint view or hidden, at every tenth of a second of the run,
 /// by truth geometry. Joint view: a radar and a camera would each detect it with probability 0.5 at
 /// least, and it is 5 to 100 m from the ego. Hidden: no sensor would, and it is within 150 m and 35
-/// degrees of straight ahead, where one could but for what is in the way. Gaps of joint view up to
-/// 0.5 s do not end it.
+/// degrees of straight ahead, where one could but for what is in the way. Joint view survives
+/// gaps of up to 1.5 s, such as another car passing between.
 class ViewTimeline {
  public:
   ViewTimeline(const World& world, std::uint64_t seed);

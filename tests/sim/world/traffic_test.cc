@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim/world/overlay.h"
 #include "sim/world/world.h"
 
 namespace v2vouch::sim {
@@ -50,25 +51,53 @@ TEST_P(Traffic, IsTheSameForTheSameSeedAndADenserOneHoldsTheThinner) {
   EXPECT_NEAR(talk, 30, 15);  // Half of 60; four sigma of a binomial are 15.5.
 }
 
+void ExpectNobodyTouches(const World& world, const std::string& what) {
+  const VehicleConfig& car = world.scenario().vehicle;
+  for (double t = 0.0; t <= world.scenario().duration_s; t += 0.5) {
+    const Snapshot snapshot = world.At(t);
+    std::vector<std::pair<std::uint32_t, Box>> boxes = {
+        {0,
+         {snapshot.ego.PointAt(car.centre_x_m, 0.0), snapshot.ego.yaw_rad, car.length_m,
+          car.width_m}}};
+    for (const ActorState& actor : snapshot.actors) {
+      boxes.emplace_back(actor.actor->id, actor.box());
+    }
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        if ((boxes[i].second.centre - boxes[k].second.centre).norm() > 20.0) continue;
+        ASSERT_FALSE(Overlap(boxes[i].second, boxes[k].second))
+            << what << ": vehicles " << boxes[k].first << " and " << boxes[i].first << " at " << t
+            << " s";
+      }
+    }
+  }
+}
+
 // Whatever is drawn keeps its distance from all others at all times, on many seeds.
 TEST_P(Traffic, NobodyTouchesAnybody) {
   for (std::uint64_t seed = 11; seed <= 16; ++seed) {
     std::vector<std::string> problems;
     const auto world = Campaign(GetParam(), 60, seed, problems);
     ASSERT_NE(world, nullptr) << problems.front();
-    const VehicleConfig& car = world->scenario().vehicle;
-    for (double t = 0.0; t <= world->scenario().duration_s; t += 0.5) {
-      const Snapshot snapshot = world->At(t);
-      std::vector<Box> boxes = {{snapshot.ego.PointAt(car.centre_x_m, 0.0), snapshot.ego.yaw_rad,
-                                 car.length_m, car.width_m}};
-      for (const ActorState& actor : snapshot.actors) boxes.push_back(actor.box());
-      for (std::size_t i = 0; i < boxes.size(); ++i) {
-        for (std::size_t k = 0; k < i; ++k) {
-          if ((boxes[i].centre - boxes[k].centre).norm() > 20.0) continue;
-          ASSERT_FALSE(Overlap(boxes[i], boxes[k])) << "seed " << seed << " at " << t << " s";
-        }
-      }
-    }
+    ExpectNobodyTouches(*world, "seed " + std::to_string(seed));
+  }
+}
+
+TEST(Manoeuvres, OfTheHonestSetTouchNobody) {
+  const std::pair<const char*, const char*> cases[] = {{"campaign_urban", "H09_braking_urban"},
+                                                       {"campaign_urban", "H09_turns"},
+                                                       {"campaign_highway", "H09_braking_highway"}};
+  for (const auto& [name, overlay] : cases) {
+    Scenario scenario;
+    std::vector<std::string> problems;
+    ASSERT_TRUE(LoadScenario(std::string("sim/scenarios/") + name + ".yaml", scenario, problems));
+    ASSERT_TRUE(
+        LayOver(std::string("sim/attacks/catalogue/") + overlay + ".yaml", scenario, problems));
+    ASSERT_TRUE(CheckReferences(scenario, problems));
+    scenario.traffic.vehicles = 20;
+    const auto world = World::Make(scenario, 11, problems);
+    ASSERT_NE(world, nullptr) << problems.front();
+    ExpectNobodyTouches(*world, overlay);
   }
 }
 
