@@ -186,6 +186,7 @@ void PriorityPerception::CompareWithSensors(Link& link, PriorityVehicle* vehicle
   CoObservation observation = ForTrust(here, *state);
   const Sensed* sensed = FindSensed(local_id);
   observation.is_partial = sensed != nullptr && sensed->is_partial && link.trust.is_relied_on();
+  observation.is_plausible = IsVouchedFor(link);
   observation.is_ego_shifted = IsShifted(here.stamp);
   observation.shift_O = common_.shift_O();
   const bool may_accuse = MayAccuse(here.stamp) && common_.HasWitnessAgainst(link.sender);

@@ -110,7 +110,7 @@ std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> PriorityPerception::LookAr
       if (!WasHit(track, frame.stamp)) continue;
       const double sigma_m =
           std::sqrt(0.5 * (track.state_O.covariance(kX, kX) + track.state_O.covariance(kY, kY)));
-      if (IsHeldByAnother(track.id, link.sender)) {
+      if (IsHeldByAnother(track.id, link.sender) || IsAnothers(track.id, link.sender)) {
         is_taken = is_taken || AreClose(footprint, track, -0.5);
         continue;
       }
@@ -154,6 +154,16 @@ void PriorityPerception::JudgeCommonMode(Timestamp now) {
 
 bool PriorityPerception::IsShifted(Timestamp now) const {
   return shifted_ && ToSeconds(now - *shifted_) <= settings_->priority.trust.common_mode.hold_s;
+}
+
+// Not validated yet, or never: but the track is sooner this other sender's than anybody else's.
+bool PriorityPerception::IsAnothers(std::uint64_t local_id, SenderId sender) const {
+  return std::ranges::any_of(pairs_.pairs(), [&](const PairTable::Pair& pair) {
+    return pair.track_id == local_id && pair.sender != sender && pair.is_assigned &&
+           pair.evidence.observations() >= settings_->priority.trust.co_observations &&
+           TrustOf(pair.sender) != TrustState::kSuspect &&
+           TrustOf(pair.sender) != TrustState::kRevoked;
+  });
 }
 
 bool PriorityPerception::IsHeldByAnother(std::uint64_t local_id, SenderId sender) const {

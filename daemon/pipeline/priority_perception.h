@@ -118,6 +118,7 @@ class PriorityPerception {
   PriorityVehicle* VehicleOf(SenderId sender);
   [[nodiscard]] bool IsHeld(std::uint64_t local_id) const;
   [[nodiscard]] bool IsHeldByAnother(std::uint64_t local_id, SenderId sender) const;
+  [[nodiscard]] bool IsAnothers(std::uint64_t local_id, SenderId sender) const;
   [[nodiscard]] bool IsShifted(Timestamp now) const;
   [[nodiscard]] bool MayAccuse(Timestamp now) const {
     return !alignment_.is_suspect() && !IsShifted(now);

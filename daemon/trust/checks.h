@@ -34,6 +34,7 @@ struct CoObservation {
   /// The sensors have but a part of the vehicle, along which they drag their track: no residual to
   /// judge by, but one that may be torn.
   bool is_partial = false;
+  bool is_plausible = true;     ///< The pair is: what agrees only by a large bias cleans nobody.
   bool is_ego_shifted = false;  ///< Common mode: `shift_O` is our own fault, its history unknown.
   Eigen::Vector2d shift_O = Eigen::Vector2d::Zero();
 };

@@ -9,6 +9,15 @@ namespace {
 
 constexpr double kLeast = 1e-5;
 
+// Since when a condition has held without a break.
+void KeepSince(bool holds, Timestamp now, std::optional<Timestamp>& since) {
+  if (!holds) {
+    since.reset();
+  } else if (!since) {
+    since = now;
+  }
+}
+
 }  // namespace
 
 const std::array<ClaimedPlace::Place, ClaimedPlace::kPlaces>& ClaimedPlace::Places() {
@@ -52,11 +61,9 @@ void ClaimedPlace::OnLook(Timestamp stamp, std::span<const Look, kPlaces> looks,
     }
     likelihood_[i] = static_cast<float>(std::clamp(after, kLeast, 1.0));
   }
-  if (log_ratio() > config.accuse_log_ratio) {
-    accusable_since_.reset();
-  } else if (!accusable_since_) {
-    accusable_since_ = stamp;
-  }
+  const double ratio = log_ratio();
+  KeepSince(ratio <= config.lasting_log_ratio, stamp, doubted_since_);
+  KeepSince(ratio <= config.accuse_log_ratio, stamp, accusable_since_);
 }
 
 double ClaimedPlace::log_ratio() const {
@@ -75,6 +82,9 @@ std::optional<Finding> ClaimedPlace::Judge(double hold_s, const ClaimedPlaceConf
   if (ratio <= config.withdraw_log_ratio) {
     return Finding{"empty_place", Verdict::kWithdraw, "log_ratio", ratio,
                    config.withdraw_log_ratio};
+  }
+  if (doubted_since_ && ToSeconds(*last_look_ - *doubted_since_) >= config.lasting_s) {
+    return Finding{"empty_place", Verdict::kWithdraw, "log_ratio", ratio, config.lasting_log_ratio};
   }
   return std::nullopt;
 }

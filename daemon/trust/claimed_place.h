@@ -15,14 +15,16 @@ namespace v2vouch {
 
 /// C11 for senders that no sensor vouches for: is there anything where they say they are?
 struct ClaimedPlaceConfig {
-  double look_s = 0.3;            ///< At most one look per this time; looks are not independent.
-  double bias_sigma_m = 1.5;      ///< GNSS bias that an honest sender may have, per axis.
-  double false_detection = 0.05;  ///< Chance that something is seen where nothing is.
-  double clear_doubt = 0.15;      ///< Chance that what is called clear is covered.
-  double recovery_s = 5.0;        ///< Doubt fades with this time constant while nobody can look.
-  double slack_m = 1.0;           ///< A track whose box comes so near explains a claim.
-  double slack_mps = 4.0;         ///< So may their speeds differ.
-  double withdraw_log_ratio = -4.6;
+  double look_s = 0.3;               ///< At most one look per this time; looks are not independent.
+  double bias_sigma_m = 1.5;         ///< GNSS bias that an honest sender may have, per axis.
+  double false_detection = 0.05;     ///< Chance that something is seen where nothing is.
+  double clear_doubt = 0.15;         ///< Chance that what is called clear is covered.
+  double recovery_s = 5.0;           ///< Doubt fades with this time constant while nobody can look.
+  double slack_m = 1.0;              ///< A track whose box comes so near explains a claim.
+  double slack_mps = 4.0;            ///< So may their speeds differ.
+  double withdraw_log_ratio = -4.6;  ///< At once ...
+  double lasting_log_ratio = -3.3;   ///< ... or this for lasting_s: one corner may be hidden.
+  double lasting_s = 1.5;
   double accuse_log_ratio = -7.0;  ///< And this must last accuse_hold_s.
   double max_distance_m = 100.0;   ///< Farther places are not looked at.
 
@@ -36,6 +38,8 @@ struct ClaimedPlaceConfig {
     a.Field("slack_m", slack_m, {.at_least = 0.0, .at_most = 10.0});
     a.Field("slack_mps", slack_mps, {.at_least = 0.0, .at_most = 50.0});
     a.Field("withdraw_log_ratio", withdraw_log_ratio, {.at_least = -100.0, .below = 0.0});
+    a.Field("lasting_log_ratio", lasting_log_ratio, {.at_least = -100.0, .below = 0.0});
+    a.Field("lasting_s", lasting_s, {.at_least = 0.0, .at_most = 60.0});
     a.Field("accuse_log_ratio", accuse_log_ratio, {.at_least = -100.0, .below = 0.0});
     a.Field("max_distance_m", max_distance_m, {.above = 1.0, .at_most = 500.0});
   }
@@ -81,6 +85,7 @@ class ClaimedPlace {
   void OnVouched() {
     likelihood_.fill(1.0F);
     accusable_since_.reset();
+    doubted_since_.reset();
   }
   /// Something is held against it that another identity should not wash off.
   [[nodiscard]] bool has_doubt() const { return log_ratio() < -0.5; }
@@ -93,7 +98,8 @@ class ClaimedPlace {
   static constexpr std::array<float, kPlaces> kCertain = {1, 1, 1, 1, 1, 1, 1, 1, 1};
   std::array<float, kPlaces> likelihood_ = kCertain;
   std::optional<Timestamp> last_look_;
-  std::optional<Timestamp> accusable_since_;
+  std::optional<Timestamp> doubted_since_;    // Below lasting_log_ratio since ...
+  std::optional<Timestamp> accusable_since_;  // ... below accuse_log_ratio since.
 };
 
 }  // namespace v2vouch

@@ -61,7 +61,7 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
   }
   if (!gravest || gravest->severity != Verdict::kAccuse || !may_accuse) accusable_since_.reset();
   if (!gravest) {
-    clean_s_ += std::clamp(dt_s, 0.0, kMostCredit_s);
+    if (observation.is_plausible) clean_s_ += std::clamp(dt_s, 0.0, kMostCredit_s);
     return true;
   }
   clean_s_ = 0.0;

@@ -38,7 +38,7 @@ struct TrustConfig {
   int odd_claims = 5;        ///< ... but not so many in a row.
   double accuse_hold_s = 5.0;  ///< An accusing level must last this long.
   double suspect_s = 2.0;      ///< Least stay in SUSPECT.
-  double clean_s = 5.0;        ///< Agreeing with the sensors before CANDIDATE; doubles each time.
+  double clean_s = 15.0;       ///< Agreeing with the sensors before CANDIDATE; doubles each time.
   double max_clean_s = 60.0;
   double revoked_s = 60.0;  ///< Doubles each time.
   double max_revoked_s = 600.0;
