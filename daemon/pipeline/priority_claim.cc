@@ -56,8 +56,8 @@ bool PriorityPerception::IsSomebodyElses(Link& link, const PriorityVehicle* vehi
 }
 
 // Whether the message continues the last one: the place where the last would have the sender now.
-// What the message stream has against a sender does not count where the sensors see its vehicle
-// just where it says it is: they judge it better.
+// Jumps in the message stream do not count where the sensors see the vehicle just where this claim
+// has it: somebody else may speak under the id. What a sender says of its motion does.
 void PriorityPerception::JudgeMessages(Link& link, const PriorityVehicle* vehicle,
                                        const Claim& claim, const ClaimInOdometry& here) {
   const TrustConfig& config = settings_->priority.trust;
@@ -77,7 +77,9 @@ void PriorityPerception::JudgeMessages(Link& link, const PriorityVehicle* vehicl
   link.trust.OnMessage(here.stamp, is_consistent, config);
   if (!claim.finding) return;
   const bool is_seen = vehicle != nullptr && vehicle->is_supported && link.trust.is_relied_on();
-  if (is_seen && link.odd_claims == 0 && claim.finding->severity == Verdict::kWithdraw) return;
+  const bool is_jump =
+      claim.finding->check == "position_jump" || claim.finding->check == "own_motion";
+  if (is_seen && is_jump && link.odd_claims == 0) return;
   link.trust.OnFinding(here.stamp, *claim.finding, MayAccuse(here.stamp));
 }
 
@@ -187,6 +189,7 @@ void PriorityPerception::CompareWithSensors(Link& link, PriorityVehicle* vehicle
   const Sensed* sensed = FindSensed(local_id);
   observation.is_partial = sensed != nullptr && sensed->is_partial && link.trust.is_relied_on();
   observation.is_plausible = IsVouchedFor(link);
+  observation.is_own_motion_whole = link.breaks == 0;
   observation.is_ego_shifted = IsShifted(here.stamp);
   observation.shift_O = common_.shift_O();
   const bool may_accuse = MayAccuse(here.stamp) && common_.HasWitnessAgainst(link.sender);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kMaxClaimAge_s = 0.4;  // An older claim says too little of where to look now.
 constexpr double kHit_s = 0.35;         // A track hit so lately is there.
 constexpr double kStanding_mps = 2.0;   // Standing returns may be a vehicle slower than this.
-constexpr double kStandingReach_m = 3.0;
+constexpr double kStandingReach_m = 2.0;
 constexpr double kStale_s = 0.075;  // Positions older than they say; as in the association.
 constexpr double kPlaceSigma_m = 0.3;
 constexpr double kTaken = 0.9;  // How surely a place is not free that another vehicle stands on.
@@ -118,7 +118,7 @@ std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> PriorityPerception::LookAr
       const double speed_mps =
           std::abs(std::abs(claim.speed_mps) - std::abs(track.state_O.mean[kSpeed]));
       const double speed_sigma_mps = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
-      is_occupied = is_occupied || speed_mps <= config.slack_mps + 2.0 * speed_sigma_mps;
+      is_occupied = is_occupied || speed_mps <= config.slack_mps + speed_sigma_mps;
     }
     if (!is_occupied && std::abs(claim.speed_mps) < kStanding_mps) {
       is_occupied = map.HasStandingReturn(footprint.centre_O, kStandingReach_m);

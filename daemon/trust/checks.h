@@ -34,6 +34,7 @@ struct CoObservation {
   /// The sensors have but a part of the vehicle, along which they drag their track: no residual to
   /// judge by, but one that may be torn.
   bool is_partial = false;
+  bool is_own_motion_whole = true;  ///< The sender's messages have lately continued each other.
   bool is_plausible = true;     ///< The pair is: what agrees only by a large bias cleans nobody.
   bool is_ego_shifted = false;  ///< Common mode: `shift_O` is our own fault, its history unknown.
   Eigen::Vector2d shift_O = Eigen::Vector2d::Zero();
@@ -63,6 +64,7 @@ class ResidualHistory {
   /// The residual has lately gone where neither motion took it: one of the two has jumped, within a
   /// second and by more than torn_m (and 0.05 s of speed, and twice the sensors' own sigma).
   [[nodiscard]] bool is_torn() const { return is_torn_; }
+  [[nodiscard]] double unexplained_m() const { return unexplained_.norm(); }
   /// Two-second mean 10 s ago, or the first two seconds where there are not yet 10.
   [[nodiscard]] std::optional<Eigen::Vector2d> reference_O() const;
 

@@ -50,6 +50,7 @@ void ClaimedPlace::OnLook(Timestamp stamp, std::span<const Look, kPlaces> looks,
     double after = 1.0;
     switch (looks[i].seen) {
       case Seen::kOccupied:
+        after = std::pow(before, std::exp(-dt_s / config.occupied_s));
         break;
       case Seen::kUnknown:
         after = std::pow(before, fade);

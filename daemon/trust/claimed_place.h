@@ -20,8 +20,9 @@ struct ClaimedPlaceConfig {
   double false_detection = 0.05;     ///< Chance that something is seen where nothing is.
   double clear_doubt = 0.15;         ///< Chance that what is called clear is covered.
   double recovery_s = 5.0;           ///< Doubt fades with this time constant while nobody can look.
+  double occupied_s = 0.6;           ///< ... with this one while something is there.
   double slack_m = 1.0;              ///< A track whose box comes so near explains a claim.
-  double slack_mps = 4.0;            ///< So may their speeds differ.
+  double slack_mps = 3.0;            ///< So may their speeds differ.
   double withdraw_log_ratio = -4.6;  ///< At once ...
   double lasting_log_ratio = -3.3;   ///< ... or this for lasting_s: one corner may be hidden.
   double lasting_s = 1.5;
@@ -35,6 +36,7 @@ struct ClaimedPlaceConfig {
     a.Field("false_detection", false_detection, {.at_least = 0.0, .below = 0.5});
     a.Field("clear_doubt", clear_doubt, {.above = 0.0, .below = 1.0});
     a.Field("recovery_s", recovery_s, {.above = 0.1, .at_most = 600.0});
+    a.Field("occupied_s", occupied_s, {.above = 0.01, .at_most = 600.0});
     a.Field("slack_m", slack_m, {.at_least = 0.0, .at_most = 10.0});
     a.Field("slack_mps", slack_mps, {.at_least = 0.0, .at_most = 50.0});
     a.Field("withdraw_log_ratio", withdraw_log_ratio, {.at_least = -100.0, .below = 0.0});
@@ -54,9 +56,9 @@ struct ClaimedPlaceConfig {
 ///     log ratio = ln sum_i w_i l_i
 ///
 /// P_i = 0 where the place is covered, out of view or not known to be clear: then l_i goes back to
-/// 1 with the time constant recovery_s. A place where something is that may be the vehicle has
-/// l_i = 1. So the ratio never falls below the weight of what cannot be seen, however long one
-/// looks: who may be hidden loses nothing.
+/// 1 with the time constant recovery_s; with occupied_s where something is that may be the vehicle
+/// (which may just drive past). So the ratio never falls below the weight of what cannot be seen,
+/// however long one looks: who may be hidden loses nothing.
 ///
 /// Copyable, fixed size.
 class ClaimedPlace {

@@ -48,7 +48,12 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
                                   const TrustConfig& config) {
   const double dt_s = ToSeconds(observation.stamp - history_.last());
   history_.Add(observation, config);
-  if (history_.is_torn() && consistent_run_ >= config.candidate_messages) {
+  if (history_.is_torn() && !observation.is_own_motion_whole && is_relied_on()) {
+    Suspect(observation.stamp, {"residual_jump", Verdict::kWithdraw, "jump_m",
+                                history_.unexplained_m(), config.torn_m});
+    return true;
+  }
+  if (history_.is_torn() && observation.is_own_motion_whole) {
     Release(observation.stamp);
     history_ = {};
     return false;

@@ -62,9 +62,10 @@ class SenderTrust {
   void OnMessage(Timestamp stamp, bool is_consistent, const TrustConfig& config);
 
   /// A claim beside its LOCAL track. Acts on the gravest finding; TakeVerdict() tells.
-  /// @return false where the two have been torn apart while the sender's messages continue each
-  /// other: the LOCAL track has jumped to something else. Then nobody is to blame and the sender
-  /// starts from zero; Release() has been called.
+  /// A sender whose own messages broke off when the two were torn apart is withdrawn at once.
+  /// @return false where they were torn apart while the sender's messages continue each other: the
+  /// LOCAL track has jumped to something else. Then nobody is to blame and the sender starts from
+  /// zero; Release() has been called.
   bool OnCoObservation(const CoObservation& observation, bool may_accuse,
                        const TrustConfig& config);
 

@@ -46,6 +46,7 @@ constexpr std::array kRows{
     Row{"own_motion", kPosition},
     Row{"position_jump", kPosition},  // Listed.
     Row{"residual_drift", kPosition},
+    Row{"residual_jump", kPosition},
     Row{"residual_level", kPosition},
     Row{"seen_elsewhere", kPosition},
     Row{"size_change", kStatic},  // Listed.

@@ -64,7 +64,7 @@ TEST(ClaimedPlace, HiddenOrUnknownLosesNothing) {
 }
 
 // A bias of a few metres may have put an honest car behind what covers one of the places.
-TEST(ClaimedPlace, OnePlaceThatCannotBeSeenIsEnough) {
+TEST(ClaimedPlace, OneSideThatCannotBeSeenIsEnough) {
   for (std::size_t hidden = 0; hidden < 5; ++hidden) {
     auto looks = All({Seen::kEmpty, 0.95});
     looks[hidden] = {Seen::kUnknown, 0.0};
@@ -74,6 +74,27 @@ TEST(ClaimedPlace, OnePlaceThatCannotBeSeenIsEnough) {
     ClaimedPlace beside;
     EXPECT_TRUE(std::isnan(RunUntilWithdrawn(beside, looks, 30.0))) << hidden;
   }
+}
+
+TEST(ClaimedPlace, OneHiddenCornerOnlyTakesLonger) {
+  auto looks = All({Seen::kEmpty, 0.95});
+  looks[8] = {Seen::kUnknown, 0.0};
+  ClaimedPlace place;
+  const double t = RunUntilWithdrawn(place, looks, 10.0);
+  EXPECT_GE(t, kConfig.lasting_s);
+  EXPECT_LE(t, kConfig.lasting_s + 3.0);
+}
+
+TEST(ClaimedPlace, SomebodyDrivingPastClearsOnlyForAMoment) {
+  ClaimedPlace place;
+  double withdrawn = 0.0;
+  for (int i = 0; i < 40 && withdrawn == 0.0; ++i) {
+    const bool passes = i % 8 == 3;  // For 0.3 s in every 2.4 s.
+    place.OnLook(At(0.3 * i), All({passes ? Seen::kOccupied : Seen::kEmpty, 0.9}), kConfig);
+    if (place.Judge(5.0, kConfig)) withdrawn = 0.3 * i;
+  }
+  EXPECT_GT(withdrawn, 0.0);
+  EXPECT_LT(withdrawn, 5.0);
 }
 
 TEST(ClaimedPlace, DoubtFadesWhileNobodyCanLookAndEndsWhereTheSensorsVouch) {

@@ -235,6 +235,56 @@ TEST(SenderTrust, AFalseSensedVelocityBlamesNobody) {
       Verdict::kWithdraw)));
 }
 
+// The residual jumps by 6 m. Whoever's own continuity broke is at fault.
+TEST(SenderTrust, ATornPairBlamesTheSenderOnlyWhereItsOwnMotionBroke) {
+  const auto torn = [](bool is_own_motion_whole) {
+    SenderTrust trust = Validated();
+    for (int i = 0; i < 30; ++i) {
+      CoObservation observation = Residual(i < 20 ? 0.0 : 6.0, 0.0);
+      observation.stamp = At(0.1 * i);
+      observation.velocity_residual_O = Eigen::Vector2d::Zero();
+      observation.is_own_motion_whole = is_own_motion_whole;
+      if (!trust.OnCoObservation(observation, true, kConfig)) {
+        EXPECT_EQ(i, 20);
+        break;
+      }
+    }
+    return trust;
+  };
+  SenderTrust honest = torn(true);
+  EXPECT_EQ(honest.state(), TrustState::kCandidate);
+  EXPECT_FALSE(honest.TakeVerdict().has_value());
+  SenderTrust liar = torn(false);
+  EXPECT_EQ(liar.state(), TrustState::kSuspect);
+  EXPECT_EQ(liar.TakeVerdict()->finding.check, "residual_jump");
+}
+
+// A step that the two velocities explain is no tear: that is a sender walking off.
+TEST(SenderTrust, WalkingOffIsNoTear) {
+  SenderTrust trust = Validated();
+  for (int i = 0; i < 40; ++i) {
+    CoObservation observation = Residual(0.4 * i, 0.0);
+    observation.stamp = At(0.1 * i);
+    observation.velocity_residual_O = Eigen::Vector2d(4.0, 0.0);
+    EXPECT_TRUE(trust.OnCoObservation(observation, true, kConfig)) << i;
+  }
+  EXPECT_EQ(trust.state(), TrustState::kSuspect) << "by its level";
+}
+
+// The sensors lose the vehicle for two seconds and come back to one 8 m off.
+TEST(SenderTrust, AnotherVehicleTakenForTheOldOneIsTorn) {
+  SenderTrust trust = Validated();
+  for (int i = 0; i < 15; ++i) {
+    CoObservation observation = Residual(0.5, 0.0);
+    observation.stamp = At(0.1 * i);
+    ASSERT_TRUE(trust.OnCoObservation(observation, true, kConfig));
+  }
+  CoObservation other = Residual(8.0, 0.0);
+  other.stamp = At(3.5);
+  EXPECT_FALSE(trust.OnCoObservation(other, true, kConfig));
+  EXPECT_EQ(trust.state(), TrustState::kCandidate);
+}
+
 TEST(SenderTrust, AShiftThatAllShareIsNotTheSendersFault) {
   const auto shifted = [](double) {
     CoObservation observation = Residual(6.0, 0.0);
