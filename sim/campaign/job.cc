@@ -7,6 +7,7 @@
 #include <cctype>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 namespace v2vouch::campaign {
 namespace {
@@ -45,6 +46,21 @@ bool SetsDensity(const std::string& file) {
   } catch (const YAML::Exception&) {
     return false;
   }
+}
+
+// The scenarios that a file says it is for.
+std::vector<std::string> Suits(const std::string& file) {
+  try {
+    const YAML::Node root = YAML::LoadFile(file);
+    if (root.IsMap() && root["suits"]) return root["suits"].as<std::vector<std::string>>();
+  } catch (const YAML::Exception&) {  // Likewise.
+  }
+  return {};
+}
+
+bool AreSuited(const Overlay& overlay, const Job& job) {
+  return overlay.suits.empty() || std::find(overlay.suits.begin(), overlay.suits.end(),
+                                            job.scenario_name()) != overlay.suits.end();
 }
 
 std::string KeyPart(std::string_view text) {
@@ -86,6 +102,7 @@ std::vector<Overlay> ReadCatalogue(const std::vector<std::filesystem::path>& fil
     overlay.variant = name->variant;
     overlay.file = file.string();
     overlay.sets_density = SetsDensity(overlay.file);
+    overlay.suits = Suits(overlay.file);
     named.emplace_back(name->letter, name->number, name->variant, std::move(overlay));
   }
   std::sort(named.begin(), named.end(), [](const auto& a, const auto& b) {
@@ -110,7 +127,8 @@ std::vector<Overlay> Select(std::string_view list, Kind kind, const std::vector<
       if (!std::filesystem::is_regular_file(item)) {
         problems.push_back(item + ": no such file");
       } else {
-        add({kind, std::filesystem::path(item).stem().string(), "", item, SetsDensity(item)});
+        add({kind, std::filesystem::path(item).stem().string(), "", item, SetsDensity(item),
+             Suits(item)});
       }
       continue;
     }
@@ -142,8 +160,9 @@ std::vector<Job> Jobs(const Plan& plan) {
       for (const int density : plan.densities) {
         for (const Overlay& overlay : overlays) {
           if (overlay.sets_density && density != plan.densities.front()) continue;
-          jobs.push_back({overlay, scenario, overlay.sets_density ? 0 : density,
-                          plan.first_seed + static_cast<std::uint64_t>(i)});
+          Job job{overlay, scenario, overlay.sets_density ? 0 : density,
+                  plan.first_seed + static_cast<std::uint64_t>(i)};
+          if (AreSuited(overlay, job)) jobs.push_back(std::move(job));
         }
       }
     }

@@ -19,10 +19,11 @@ enum class Kind {
 /// "lateral_8m". A file of the user's own has its name without ending as id.
 struct Overlay {
   Kind kind = Kind::kPlain;
-  std::string id;             ///< "A5", "H1"; empty = plain.
-  std::string variant;        ///< May be empty.
-  std::string file;           ///< Path of the YAML; empty = plain.
-  bool sets_density = false;  ///< It states `traffic.vehicles` itself.
+  std::string id;                    ///< "A5", "H1"; empty = plain.
+  std::string variant;               ///< May be empty.
+  std::string file;                  ///< Path of the YAML; empty = plain.
+  bool sets_density = false;         ///< It states `traffic.vehicles` itself.
+  std::vector<std::string> suits{};  ///< Names of the scenarios it is for; empty = all.
 
   [[nodiscard]] std::string name() const { return variant.empty() ? id : id + "/" + variant; }
   friend bool operator==(const Overlay&, const Overlay&) = default;

@@ -101,6 +101,18 @@ TEST_F(Catalogue, APlanRunsEverythingAndItsPlainCounterpart) {
   EXPECT_EQ(Jobs(plan).size(), 3u * 2u * 7u);
 }
 
+TEST_F(Catalogue, AnOverlayRunsOnlyWhereItSuits) {
+  Write("H09_turns.yaml", "suits: [urban]\n");
+  Plan plan;
+  plan.overlays = Select((folder_ / "H09_turns.yaml").string(), Kind::kHonest, {}, problems_);
+  plan.scenarios = {"highway", "my/urban.yaml"};
+  plan.densities = {5};
+  plan.seeds = 2;
+  const auto jobs = Jobs(plan);
+  ASSERT_EQ(jobs.size(), 2u);
+  EXPECT_EQ(jobs[0].scenario_name(), "urban");
+}
+
 TEST_F(Catalogue, ShardsShareOutAllJobs) {
   Plan plan;
   plan.overlays = Select("all", Kind::kAttack, catalogue_, problems_);
