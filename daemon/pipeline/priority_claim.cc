@@ -180,11 +180,17 @@ void PriorityPerception::CompareWithSensors(Link& link, PriorityVehicle* vehicle
   std::uint64_t local_id = 0;
   if (vehicle != nullptr) {
     local_id = vehicle->is_supported ? vehicle->local_id : 0;
+  } else if (link.trust.has_penalty() && FindSensed(link.withdrawn_id) != nullptr) {
+    local_id = link.withdrawn_id;
   } else if (const PairTable::Pair* pair = pairs_.AssignedTo(link.sender)) {
-    local_id = pair->track_id;
+    // A long agreement in velocity alone can carry any offset: such a track is another's.
+    if (pair->evidence.level() <= config.safe.max_level) local_id = pair->track_id;
   }
   const auto state = SensedAt(local_id, here.stamp);
   if (!state) return;
+  // Beside another track nothing goes on of what was held against it beside the last one.
+  if (vehicle == nullptr && link.compared_id != local_id) link.trust.ForgetResiduals();
+  link.compared_id = local_id;
   CoObservation observation = ForTrust(here, *state);
   const Sensed* sensed = FindSensed(local_id);
   observation.is_partial = sensed != nullptr && sensed->is_partial && link.trust.is_relied_on();
@@ -192,9 +198,13 @@ void PriorityPerception::CompareWithSensors(Link& link, PriorityVehicle* vehicle
   observation.is_own_motion_whole = link.breaks == 0;
   observation.is_ego_shifted = IsShifted(here.stamp);
   observation.shift_O = common_.shift_O();
-  const bool may_accuse = MayAccuse(here.stamp) && common_.HasWitnessAgainst(link.sender);
+  // A LOCAL track that goes over to another car leaves an honest sender just as a liar leaves its
+  // car. The liar's place is empty.
+  const bool may_accuse = MayAccuse(here.stamp) && common_.HasWitnessAgainst(link.sender) &&
+                          link.place.log_ratio() <= config.trust.place.lasting_log_ratio;
   if (!link.trust.OnCoObservation(observation, may_accuse, config.trust)) {
     pairs_.DropSender(link.sender);
+    link.withdrawn_id = 0;
     if (vehicle != nullptr) EndVehicle(*vehicle, here.stamp);
     return;
   }

@@ -16,6 +16,7 @@ namespace {
 constexpr double kReturnGate = 13.8;    // Chi-square, 2 dof, 0.999.
 constexpr double kReturnFloor_m = 0.7;  // Extent and reference point of a young track.
 constexpr double kReturnSpeed_mps = 4.0;
+constexpr double kClaimedReach_m = 2.5;
 constexpr double kSlack_s = 0.5;     // A track born so long before the loss may still be its heir.
 constexpr double kPatience_s = 0.5;  // Hits of a return may lie so far apart.
 // A coast less certain than this contradicts nobody.
@@ -210,6 +211,30 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
   vehicle.agreed = Coast(vehicle.filter.kinematics(), frame.stamp);
 }
 
+// Its sender has gone on speaking: what comes back must be where it says, its known bias taken off,
+// and move as it says. Another car that comes into view near by is not it.
+bool PriorityPerception::IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle,
+                                        Timestamp stamp) {
+  const Link* link = FindLink(vehicle.sender);
+  if (link == nullptr || !link->has_last) return true;
+  const ClaimInOdometry& claim = link->last;
+  const double age_s = ToSeconds(stamp - claim.stamp);
+  if (std::abs(age_s) > kPatience_s) return true;
+  const Eigen::Vector2d v_O =
+      claim.speed_mps * Eigen::Vector2d(std::cos(claim.yaw_rad), std::sin(claim.yaw_rad));
+  const Eigen::Vector2d off_O =
+      claim.p_O + age_s * v_O - vehicle.filter.bias() - track.state_O.mean.head<2>();
+  const double sigma_m = std::sqrt(0.5 * claim.noise.trace()) + PositionSigma(track.state_O);
+  if (off_O.norm() > kClaimedReach_m + 2.0 * sigma_m) return false;
+  if (!claim.has_course) return true;
+  const double yaw_rad = track.state_O.mean[kYaw];
+  const Eigen::Vector2d sensed_O =
+      track.state_O.mean[kSpeed] * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
+  const double yaw_mps = std::sqrt(track.state_O.covariance(kYaw, kYaw)) * claim.speed_mps;
+  const double speed_sigma_mps = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
+  return (v_O - sensed_O).norm() <= kSameSpeed_mps + 2.0 * std::hypot(speed_sigma_mps, yaw_mps);
+}
+
 // A vehicle comes back as its own LOCAL track, or as the nearest new one that nobody holds.
 void PriorityPerception::LookForReturn(PriorityVehicle& vehicle, Timestamp stamp) {
   const BridgeConfig& config = settings_->priority.bridge;
@@ -228,6 +253,7 @@ void PriorityPerception::LookForReturn(PriorityVehicle& vehicle, Timestamp stamp
     const double speed = std::abs(here.mean[kSpeed]) - std::abs(track.state_O.mean[kSpeed]);
     const double speed_sigma = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
     if (std::abs(speed) > kReturnSpeed_mps + 2.0 * speed_sigma) continue;
+    if (!IsWhereClaimed(track, vehicle, stamp)) continue;
     const Eigen::Matrix2d S = here.covariance.topLeftCorner<2, 2>() +
                               track.state_O.covariance.topLeftCorner<2, 2>() +
                               kReturnFloor_m * kReturnFloor_m * Eigen::Matrix2d::Identity();

@@ -349,7 +349,10 @@ void PriorityPerception::Report(Link& link, Timestamp stamp, Outputs& outputs) {
   report.evidence = {{judgement->finding.quantity, judgement->finding.value},
                      {"limit", judgement->finding.limit}};
   outputs.reports.push_back(std::move(report));
-  if (PriorityVehicle* vehicle = VehicleOf(link.sender)) EndVehicle(*vehicle, stamp);
+  if (PriorityVehicle* vehicle = VehicleOf(link.sender)) {
+    link.withdrawn_id = vehicle->local_id;
+    EndVehicle(*vehicle, stamp);
+  }
 }
 
 }  // namespace v2vouch

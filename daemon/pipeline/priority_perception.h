@@ -90,6 +90,8 @@ class PriorityPerception {
     std::optional<double> length_m;  // As claimed.
     std::optional<double> width_m;
     ClaimedPlace place;
+    std::uint64_t withdrawn_id = 0;  // LOCAL track it was relied on with when it was withdrawn.
+    std::uint64_t compared_id = 0;   // LOCAL track of the last residual; 0 = none.
     int breaks = 0;                  // Above 0: its messages lately did not continue each other.
     int odd_claims = 0;              // In a row that are not where the sensors see the sender.
     std::optional<double> height_m;  // Smoothed; GNSS heights are noisy.
@@ -131,6 +133,7 @@ class PriorityPerception {
                    Outputs& outputs);
   void TakeSensorUpdates(PriorityVehicle& vehicle, const Sensed& sensed, const LocalFrame& frame);
   void LookForReturn(PriorityVehicle& vehicle, Timestamp stamp);
+  bool IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle, Timestamp stamp);
   std::optional<Finding> Contradiction(PriorityVehicle& vehicle, Timestamp stamp) const;
   void LookAtPlace(PriorityVehicle& vehicle, const LocalFrame& frame, const VisibilityMap& map);
 

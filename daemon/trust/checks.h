@@ -57,6 +57,7 @@ class ResidualHistory {
   [[nodiscard]] double yaw_rad() const { return yaw_; }
   [[nodiscard]] double yaw_sigma_rad() const { return yaw_sigma_; }
   [[nodiscard]] bool has_yaw() const { return has_yaw_; }
+  [[nodiscard]] double sensed_sigma_m() const { return sensed_sigma_; }
   [[nodiscard]] double accel_mps2() const { return accel_; }  ///< Mean of three mean times.
   [[nodiscard]] double accel_sigma_mps2() const { return accel_sigma_; }
   [[nodiscard]] double time_s() const { return time_s_; }
@@ -85,6 +86,7 @@ class ResidualHistory {
   Eigen::Vector2d fast_mean_ = Eigen::Vector2d::Zero();
   double speed_ = 0.0, speed_sigma_ = 0.0, yaw_ = 0.0, yaw_sigma_ = 0.0;
   double accel_ = 0.0, accel_sigma_ = 0.0;
+  double sensed_sigma_ = 0.0;
   std::array<Eigen::Vector2d, kBlocks> blocks_{};  // Means by second, ring.
   std::uint64_t block_count_ = 0;
   Timestamp block_start_{};
