@@ -193,6 +193,7 @@ void PriorityPerception::CompareWithSensors(Link& link, PriorityVehicle* vehicle
   link.compared_id = local_id;
   CoObservation observation = ForTrust(here, *state);
   const Sensed* sensed = FindSensed(local_id);
+  if (sensed != nullptr) observation.extent_sigma_m = 0.5 * sensed->track.extent.length_sigma_m;
   observation.is_partial = sensed != nullptr && sensed->is_partial && link.trust.is_relied_on();
   observation.is_plausible = IsVouchedFor(link);
   observation.is_own_motion_whole = link.breaks == 0;

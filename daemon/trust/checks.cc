@@ -15,28 +15,30 @@ constexpr double kAlignmentDrift = 0.3;
 // A good receiver's heading may be this far off for long (SAE J2945/1 asks for 2 degrees).
 constexpr double kHonestHeading_rad = FromDegrees(2.0);
 
+// What limits grow by: everywhere, and along the track beside.
+struct Slack {
+  double all_m = 0.0;
+  double along_m = 0.0;
+};
+
 // How far a residual exceeds limits that are looser along track: 1 = at the limit.
-double Excess(const Eigen::Vector2d& residual_O, const CoObservation& now, double sensed_sigma_m,
-              double limit_m, double alignment_share, const TrustConfig& config) {
+double Excess(const Eigen::Vector2d& residual_O, const CoObservation& now, double limit_m,
+              const Slack& slack) {
   const double c = std::cos(now.track_yaw_rad);
   const double s = std::sin(now.track_yaw_rad);
   const double along_m = c * residual_O.x() + s * residual_O.y();
   const double across_m = -s * residual_O.x() + c * residual_O.y();
-  const double across_limit_m =
-      limit_m + alignment_share * now.alignment_sigma_m + 2.0 * sensed_sigma_m;
-  const double along_limit_m =
-      across_limit_m + config.stale_position_s * std::abs(now.track_speed_mps);
-  return std::hypot(along_m / along_limit_m, across_m / across_limit_m);
+  const double across_limit_m = limit_m + slack.all_m;
+  return std::hypot(along_m / (across_limit_m + slack.along_m), across_m / across_limit_m);
 }
 
 std::optional<Finding> JudgeResidual(std::string_view check, const Eigen::Vector2d& residual_O,
-                                     const CoObservation& now, double sensed_sigma_m,
-                                     double withdraw_m, double accuse_m, double alignment_share,
-                                     const TrustConfig& config) {
-  if (Excess(residual_O, now, sensed_sigma_m, accuse_m, alignment_share, config) > 1.0) {
+                                     const CoObservation& now, double withdraw_m, double accuse_m,
+                                     const Slack& slack) {
+  if (Excess(residual_O, now, accuse_m, slack) > 1.0) {
     return Finding{check, Verdict::kAccuse, "residual_m", residual_O.norm(), accuse_m};
   }
-  if (Excess(residual_O, now, sensed_sigma_m, withdraw_m, alignment_share, config) > 1.0) {
+  if (Excess(residual_O, now, withdraw_m, slack) > 1.0) {
     return Finding{check, Verdict::kWithdraw, "residual_m", residual_O.norm(), withdraw_m};
   }
   return std::nullopt;
@@ -74,6 +76,9 @@ void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& c
   const double fast_span_s = std::max(std::min(time_s_, kFastShare * config.mean_time_s), 1e-3);
   const double w_fast = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / fast_span_s) : 1.0;
   sensed_sigma_ += w * (observation.sensed_sigma_m - sensed_sigma_);
+  // What was not known of the length at the start of a drift counts until its end.
+  const double w_slow = has_any_ ? 1.0 - std::exp(-dt_s / (10.0 * config.mean_time_s)) : 1.0;
+  extent_sigma_ += w_slow * (observation.extent_sigma_m - extent_sigma_);
   fast_mean_ += w_fast * (observation.residual_O - fast_mean_);
   speed_ += w * (observation.speed_residual_mps - speed_);
   speed_sigma_ += w * (observation.speed_sigma_mps - speed_sigma_);
@@ -94,7 +99,8 @@ void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& c
     block_size_ = 0;
     block_start_ = observation.stamp;
   }
-  block_sum_ += observation.residual_O;
+  block_sum_ += Eigen::Vector3d(observation.residual_O.x(), observation.residual_O.y(),
+                                observation.track_speed_mps);
   ++block_size_;
   has_any_ = true;
   last_ = observation.stamp;
@@ -102,6 +108,14 @@ void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& c
 
 std::optional<Eigen::Vector2d> ResidualHistory::reference_O() const {
   if (block_count_ < 2) return std::nullopt;
+  return Reference().head<2>();
+}
+
+double ResidualHistory::reference_speed_mps() const {
+  return block_count_ < 2 ? 0.0 : Reference().z();
+}
+
+Eigen::Vector3d ResidualHistory::Reference() const {
   const std::uint64_t oldest = block_count_ > kBlocks ? block_count_ - kBlocks : 0;
   return 0.5 * (blocks_[oldest % kBlocks] + blocks_[(oldest + 1) % kBlocks]);
 }
@@ -111,17 +125,23 @@ std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObserv
   if (!history.is_settled()) return std::nullopt;
   const Eigen::Vector2d own_O =
       now.is_ego_shifted ? (history.mean_O() - now.shift_O).eval() : history.mean_O();
-  return JudgeResidual("residual_level", own_O, now, history.sensed_sigma_m(),
-                       config.level_withdraw_m, config.level_accuse_m, 1.0, config);
+  return JudgeResidual(
+      "residual_level", own_O, now, config.level_withdraw_m, config.level_accuse_m,
+      {now.alignment_sigma_m + 2.0 * history.sensed_sigma_m(),
+       config.stale_position_s * std::abs(now.track_speed_mps) + 2.0 * history.extent_sigma_m()});
 }
 
 std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config) {
   const auto reference_O = history.reference_O();
   if (!reference_O || now.is_ego_shifted) return std::nullopt;
-  return JudgeResidual("residual_drift", history.mean_O() - *reference_O, now,
-                       history.sensed_sigma_m(), config.drift_withdraw_m, config.drift_accuse_m,
-                       kAlignmentDrift, config);
+  const double changed_mps = std::abs(now.track_speed_mps - history.reference_speed_mps());
+  return JudgeResidual(
+      "residual_drift", history.mean_O() - *reference_O, now, config.drift_withdraw_m,
+      config.drift_accuse_m,
+      {kAlignmentDrift * now.alignment_sigma_m + 2.0 * history.sensed_sigma_m(),
+       config.stale_position_s * changed_mps + kJitter_s * std::abs(now.track_speed_mps) +
+           2.0 * history.extent_sigma_m()});
 }
 
 std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObservation& now,

@@ -31,6 +31,7 @@ struct CoObservation {
   double accel_residual_mps2 = 0.0;
   double accel_sigma_mps2 = 0.5;  ///< Of the sensed acceleration.
   double sensed_sigma_m = 0.0;    ///< Of the sensed position, by which the sensors may be wrong.
+  double extent_sigma_m = 0.0;    ///< ... and its centre along the track: half of the length's.
   /// The sensors have but a part of the vehicle, along which they drag their track: no residual to
   /// judge by, but one that may be torn.
   bool is_partial = false;
@@ -58,6 +59,8 @@ class ResidualHistory {
   [[nodiscard]] double yaw_sigma_rad() const { return yaw_sigma_; }
   [[nodiscard]] bool has_yaw() const { return has_yaw_; }
   [[nodiscard]] double sensed_sigma_m() const { return sensed_sigma_; }
+  /// Fading by ten mean times, the span of a drift.
+  [[nodiscard]] double extent_sigma_m() const { return extent_sigma_; }
   [[nodiscard]] double accel_mps2() const { return accel_; }  ///< Mean of three mean times.
   [[nodiscard]] double accel_sigma_mps2() const { return accel_sigma_; }
   [[nodiscard]] double time_s() const { return time_s_; }
@@ -68,6 +71,8 @@ class ResidualHistory {
   [[nodiscard]] double unexplained_m() const { return unexplained_.norm(); }
   /// Two-second mean 10 s ago, or the first two seconds where there are not yet 10.
   [[nodiscard]] std::optional<Eigen::Vector2d> reference_O() const;
+  /// The track's speed then; 0 where there is no reference.
+  [[nodiscard]] double reference_speed_mps() const;
 
  private:
   static constexpr std::size_t kBlocks = 12;
@@ -86,18 +91,20 @@ class ResidualHistory {
   Eigen::Vector2d fast_mean_ = Eigen::Vector2d::Zero();
   double speed_ = 0.0, speed_sigma_ = 0.0, yaw_ = 0.0, yaw_sigma_ = 0.0;
   double accel_ = 0.0, accel_sigma_ = 0.0;
-  double sensed_sigma_ = 0.0;
-  std::array<Eigen::Vector2d, kBlocks> blocks_{};  // Means by second, ring.
+  double sensed_sigma_ = 0.0, extent_sigma_ = 0.0;
+  std::array<Eigen::Vector3d, kBlocks> blocks_{};  // Means by second, ring: residual, speed.
   std::uint64_t block_count_ = 0;
   Timestamp block_start_{};
-  Eigen::Vector2d block_sum_ = Eigen::Vector2d::Zero();
+  [[nodiscard]] Eigen::Vector3d Reference() const;  // Of at least two blocks.
+  Eigen::Vector3d block_sum_ = Eigen::Vector3d::Zero();
   int block_size_ = 0;
 };
 
 /// C8: level of the mean raw residual, along and across the vehicle's direction.
 std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config);
-/// C9: its drift against ten seconds ago.
+/// C9: its drift against ten seconds ago. A position older than its stamp shifts along the track by
+/// what the speed has changed since, and by little otherwise.
 std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config);
 /// C10: claimed against sensed velocity (along and across the vehicle's direction) and direction;
