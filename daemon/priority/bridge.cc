@@ -35,12 +35,12 @@ bool Coast::Reaches(const Eigen::Vector2d& p_O, double elapsed_s,
   const double s = std::sin(state_.mean[kYaw]);
   const double t2 = 0.5 * elapsed_s * elapsed_s;
   const double heading_mps = yaw_sigma_rad_ * std::abs(state_.mean[kSpeed]);
-  const double along =
-      (c * d.x() + s * d.y()) / (config.reach_along_m + config.reach_along_mps2 * t2 +
-                                 kSigmas * speed_sigma_mps_ * elapsed_s);
-  const double across =
-      (-s * d.x() + c * d.y()) /
-      (config.reach_across_m + config.reach_across_mps2 * t2 + kSigmas * heading_mps * elapsed_s);
+  const double reach_along_m =
+      config.reach_along_m + config.reach_along_mps2 * t2 + kSigmas * speed_sigma_mps_ * elapsed_s;
+  const double reach_across_m =
+      config.reach_across_m + config.reach_across_mps2 * t2 + kSigmas * heading_mps * elapsed_s;
+  const double along = (c * d.x() + s * d.y()) / std::min(config.reach_most_m, reach_along_m);
+  const double across = (-s * d.x() + c * d.y()) / std::min(config.reach_most_m, reach_across_m);
   return along * along + across * across <= 1.0;
 }
 

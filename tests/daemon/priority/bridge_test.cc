@@ -32,10 +32,23 @@ TEST(IsReachable, DoubtOfTheDirectionWidensTheSet) {
   seen.mean[kSpeed] = 10.0;
   seen.covariance = StateMatrix::Identity() * 1e-8;
   seen.covariance(kYaw, kYaw) = 0.1 * 0.1;
-  // 2 sigma x 10 m/s x 2 s = 4 m more than 7.5 m across.
+  // 2 sigma x 10 m/s x 1 s = 2 m more than 3 m across.
   const Coast coast(seen, FromMicros(0));
-  EXPECT_TRUE(coast.Reaches({0.0, 11.0}, 2.0, kConfig));
-  EXPECT_FALSE(coast.Reaches({0.0, 12.0}, 2.0, kConfig));
+  EXPECT_TRUE(coast.Reaches({0.0, 4.9}, 1.0, kConfig));
+  EXPECT_FALSE(coast.Reaches({0.0, 5.1}, 1.0, kConfig));
+}
+
+// What a hidden liar can do is bounded, however long its vehicle stays hidden.
+TEST(IsReachable, NothingIsBeyondTheMost) {
+  KinematicState seen;
+  seen.mean[kSpeed] = 10.0;
+  seen.covariance = StateMatrix::Identity();
+  const Coast coast(seen, FromMicros(0));
+  for (const double elapsed_s : {3.0, 5.0, 10.0}) {
+    EXPECT_TRUE(coast.Reaches({0.0, kConfig.reach_most_m - 0.1}, elapsed_s, kConfig)) << elapsed_s;
+    EXPECT_FALSE(coast.Reaches({0.0, kConfig.reach_most_m + 0.1}, elapsed_s, kConfig)) << elapsed_s;
+    EXPECT_FALSE(coast.Reaches({kConfig.reach_most_m + 0.1, 0.0}, elapsed_s, kConfig)) << elapsed_s;
+  }
 }
 
 // A car drives straight on behind a lorry; what the sensors saw of it last, a sliver, had dragged
