@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -20,8 +21,8 @@ struct Claim {
   Timestamp first_heard{};  ///< When this sender was heard for the first time.
   double age_s = 0.0;       ///< Reception minus claimed time of the content, >= 0.
   Eigen::Vector3d p_E = Eigen::Vector3d::Zero();  ///< Centre of the footprint, ECEF [m].
-  Eigen::Vector3d course_E =
-      Eigen::Vector3d::UnitX();  ///< Unit vector of the vehicle's x axis, ECEF.
+  /// Unit vector of the vehicle's x axis, ECEF.
+  Eigen::Vector3d course_E = Eigen::Vector3d::UnitX();
   bool has_elevation = false;
   double height_m = 0.0;   ///< Above the ellipsoid; 0 where unknown.
   double speed_mps = 0.0;  ///< Along course_E; negative in reverse.
@@ -46,10 +47,15 @@ struct ClaimInOdometry {
   double accel_mps2 = 0.0;
   bool has_course = true;
   Eigen::Matrix2d noise = Eigen::Matrix2d::Identity();  ///< White part per message [m^2].
-  Eigen::Matrix2d alignment =
-      Eigen::Matrix2d::Zero();  ///< Common to all senders: ego pose error here.
+  /// Common to all senders: ego pose error here [m^2].
+  Eigen::Matrix2d alignment = Eigen::Matrix2d::Zero();
   double yaw_sigma_rad = 0.02;
   double speed_sigma_mps = 0.2;
+
+  /// Over ground [m/s].
+  [[nodiscard]] Eigen::Vector2d velocity_O() const {
+    return speed_mps * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
+  }
 };
 
 }  // namespace v2vouch

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -22,6 +24,11 @@ using StateMatrix = Eigen::Matrix<double, kStateSize, kStateSize>;
 struct KinematicState {
   StateVector mean = StateVector::Zero();
   StateMatrix covariance = StateMatrix::Identity();
+
+  /// Over ground [m/s].
+  [[nodiscard]] Eigen::Vector2d velocity() const {
+    return mean[kSpeed] * Eigen::Vector2d(std::cos(mean[kYaw]), std::sin(mean[kYaw]));
+  }
 };
 
 /// Footprint size with standard deviations [m].
@@ -50,6 +57,10 @@ struct LocalTrack {
   int radar_hits = 0;  ///< Since start.
   int camera_hits = 0;
 
+  /// The latest measurement of it by any sensor; Timestamp{}: none.
+  [[nodiscard]] Timestamp LastHit() const {
+    return std::max(last_radar.value_or(Timestamp{}), last_camera.value_or(Timestamp{}));
+  }
   /// The extent that models of what sensors report of it must use.
   [[nodiscard]] Extent ModelExtent() const { return is_point ? Extent{0, 0, 0, 0} : extent; }
 };

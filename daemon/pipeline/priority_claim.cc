@@ -26,11 +26,9 @@ constexpr double kHeirYaw_rad = FromDegrees(20.0);
 
 std::optional<KinematicState> PriorityPerception::SensedAt(std::uint64_t local_id,
                                                            Timestamp stamp) const {
-  if (local_id == 0) return std::nullopt;
-  const auto sensed = std::ranges::find_if(
-      sensed_, [&](const Sensed& other) { return other.track.id == local_id; });
+  const Sensed* sensed = FindSensed(local_id);
   const double dt_s = ToSeconds(stamp - sensed_stamp_);
-  if (sensed == sensed_.end() || dt_s > kMaxFrameAge_s) return std::nullopt;
+  if (sensed == nullptr || dt_s > kMaxFrameAge_s) return std::nullopt;
   KinematicState state = sensed->track.state_O;
   if (dt_s > 0.0) PredictCtra(state, dt_s, settings_->priority.filter.motion);
   return state;
@@ -87,10 +85,7 @@ void PriorityPerception::ObservePairs(Link& link, const ClaimInOdometry& here) {
   const PriorityConfig& config = settings_->priority;
   const double dt_s = ToSeconds(here.stamp - sensed_stamp_);
   if (sensed_.empty() || dt_s > kMaxFrameAge_s) return;
-  if (link.height_m && ego_height_m_ &&
-      std::abs(*link.height_m - *ego_height_m_) > config.safe.max_height_difference_m) {
-    return;  // On another level: a bridge over us or a road below.
-  }
+  if (IsOnAnotherLevel(link)) return;
   const auto prior = PriorOf(link);
   bool has_changed = false;
   for (const Sensed& sensed : sensed_) {
@@ -264,8 +259,7 @@ void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
   if (pair == nullptr || IsHeld(pair->track_id)) return;
   const Sensed* sensed = FindSensed(pair->track_id);
   if (sensed == nullptr) return;
-  const Timestamp last_hit = std::max(sensed->track.last_radar.value_or(Timestamp{}),
-                                      sensed->track.last_camera.value_or(Timestamp{}));
+  const Timestamp last_hit = sensed->track.LastHit();
   const bool is_seen = ToSeconds(here.stamp - last_hit) <= config.bridge.support_s;
   const PairEvidence& evidence = pair->evidence;
   if (!link.trust.TryValidate({.stamp = here.stamp,

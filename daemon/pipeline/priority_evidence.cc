@@ -13,16 +13,13 @@ namespace {
 // Below this a direction is a memory rather than a measurement.
 constexpr double kDirectionSpeed_mps = 2.0;
 constexpr double kClearShare = 0.9;
-// Positions are older than they say by so much and more, in some senders for good (as in the trust
-// checks): a sigma of half of what those allow.
-constexpr double kStale_s = 0.075;
 
 struct VelocityResidual {
   double speed_mps = 0.0;
   std::optional<double> yaw_rad;
 };
 
-VelocityResidual VelocityOf(const ClaimInOdometry& claim, const StateVector& sensed) {
+VelocityResidual CompareVelocity(const ClaimInOdometry& claim, const StateVector& sensed) {
   VelocityResidual residual{claim.speed_mps - sensed[kSpeed], std::nullopt};
   double yaw_rad = AngleDifference(claim.yaw_rad, sensed[kYaw]);
   const double turned_mps = claim.speed_mps + sensed[kSpeed];
@@ -70,11 +67,9 @@ PairObservation Compare(const ClaimInOdometry& claim, const KinematicState& sens
   observation.sensed = sensed.covariance.topLeftCorner<2, 2>();
   observation.noise = claim.noise;
   observation.alignment = claim.alignment;
-  const Eigen::Vector2d stale_m =
-      kStale_s * sensed.mean[kSpeed] *
-      Eigen::Vector2d(std::cos(sensed.mean[kYaw]), std::sin(sensed.mean[kYaw]));
+  const Eigen::Vector2d stale_m = kStalePositionSigma_s * sensed.velocity();
   observation.stale = stale_m * stale_m.transpose();
-  const VelocityResidual velocity = VelocityOf(claim, sensed.mean);
+  const VelocityResidual velocity = CompareVelocity(claim, sensed.mean);
   observation.speed_residual_mps = velocity.speed_mps;
   observation.speed_sigma_mps =
       std::hypot(claim.speed_sigma_mps, std::sqrt(sensed.covariance(kSpeed, kSpeed)), 0.2);
@@ -91,16 +86,13 @@ CoObservation ForTrust(const ClaimInOdometry& claim, const KinematicState& sense
   observation.alignment_sigma_m = std::sqrt(0.5 * std::max(0.0, claim.alignment.trace()));
   observation.track_yaw_rad = sensed.mean[kYaw];
   observation.track_speed_mps = sensed.mean[kSpeed];
-  const VelocityResidual velocity = VelocityOf(claim, sensed.mean);
+  const VelocityResidual velocity = CompareVelocity(claim, sensed.mean);
   observation.speed_residual_mps = velocity.speed_mps;
   observation.speed_sigma_mps = std::sqrt(sensed.covariance(kSpeed, kSpeed));
   observation.yaw_residual_rad = velocity.yaw_rad;
   observation.yaw_sigma_rad = std::sqrt(sensed.covariance(kYaw, kYaw));
   if (claim.has_course) {
-    observation.velocity_residual_O =
-        claim.speed_mps * Eigen::Vector2d(std::cos(claim.yaw_rad), std::sin(claim.yaw_rad)) -
-        sensed.mean[kSpeed] *
-            Eigen::Vector2d(std::cos(sensed.mean[kYaw]), std::sin(sensed.mean[kYaw]));
+    observation.velocity_residual_O = claim.velocity_O() - sensed.velocity();
   }
   observation.accel_residual_mps2 = claim.accel_mps2 - sensed.mean[kAccel];
   observation.accel_sigma_mps2 = std::sqrt(sensed.covariance(kAccel, kAccel));

@@ -13,6 +13,10 @@
 
 namespace v2vouch {
 
+/// Positions are older than they say by so much and more, in some senders for good: a sigma of half
+/// of what the trust checks allow (TrustConfig::stale_position_s).
+inline constexpr double kStalePositionSigma_s = 0.075;
+
 /// A claim beside a LOCAL track that has been predicted to the claim's time. Both may tell the same
 /// motion with opposite fronts (reversing, a standing car of unknown direction): the reading in
 /// which they agree better counts.

@@ -214,25 +214,21 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
 // Its sender has gone on speaking: what comes back must be where it says, its known bias taken off,
 // and move as it says. Another car that comes into view near by is not it.
 bool PriorityPerception::IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle,
-                                        Timestamp stamp) {
+                                        Timestamp stamp) const {
   const Link* link = FindLink(vehicle.sender);
   if (link == nullptr || !link->has_last) return true;
   const ClaimInOdometry& claim = link->last;
   const double age_s = ToSeconds(stamp - claim.stamp);
   if (std::abs(age_s) > kPatience_s) return true;
-  const Eigen::Vector2d v_O =
-      claim.speed_mps * Eigen::Vector2d(std::cos(claim.yaw_rad), std::sin(claim.yaw_rad));
   const Eigen::Vector2d off_O =
-      claim.p_O + age_s * v_O - vehicle.filter.bias() - track.state_O.mean.head<2>();
+      claim.p_O + age_s * claim.velocity_O() - vehicle.filter.bias() - track.state_O.mean.head<2>();
   const double sigma_m = std::sqrt(0.5 * claim.noise.trace()) + PositionSigma(track.state_O);
   if (off_O.norm() > kClaimedReach_m + 2.0 * sigma_m) return false;
   if (!claim.has_course) return true;
-  const double yaw_rad = track.state_O.mean[kYaw];
-  const Eigen::Vector2d sensed_O =
-      track.state_O.mean[kSpeed] * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
   const double yaw_mps = std::sqrt(track.state_O.covariance(kYaw, kYaw)) * claim.speed_mps;
   const double speed_sigma_mps = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
-  return (v_O - sensed_O).norm() <= kSameSpeed_mps + 2.0 * std::hypot(speed_sigma_mps, yaw_mps);
+  return (claim.velocity_O() - track.state_O.velocity()).norm() <=
+         kSameSpeed_mps + 2.0 * std::hypot(speed_sigma_mps, yaw_mps);
 }
 
 // A vehicle comes back as its own LOCAL track, or as the nearest new one that nobody holds.

@@ -14,15 +14,13 @@ constexpr double kMaxClaimAge_s = 0.4;  // An older claim says too little of whe
 constexpr double kHit_s = 0.35;         // A track hit so lately is there.
 constexpr double kStanding_mps = 2.0;   // Standing returns may be a vehicle slower than this.
 constexpr double kStandingReach_m = 2.0;
-constexpr double kStale_s = 0.075;  // Positions older than they say; as in the association.
 constexpr double kPlaceSigma_m = 0.3;
+constexpr double kTakenSlack_m = -0.5;  // Another vehicle's place is taken well inside only.
 constexpr double kTaken = 0.9;  // How surely a place is not free that another vehicle stands on.
 constexpr double kResidual_s = 1.0;
 
 bool WasHit(const LocalTrack& track, Timestamp now) {
-  const Timestamp last =
-      std::max(track.last_radar.value_or(Timestamp{}), track.last_camera.value_or(Timestamp{}));
-  return ToSeconds(now - last) <= kHit_s;
+  return ToSeconds(now - track.LastHit()) <= kHit_s;
 }
 
 // Whether the two footprints come within `slack_m` of each other, along and across the track.
@@ -51,6 +49,13 @@ bool PriorityPerception::IsVouchedFor(const Link& link) const {
          });
 }
 
+// A bridge over us or a road below.
+bool PriorityPerception::IsOnAnotherLevel(const Link& link) const {
+  return link.height_m && ego_height_m_ &&
+         std::abs(*link.height_m - *ego_height_m_) >
+             settings_->priority.safe.max_height_difference_m;
+}
+
 void PriorityPerception::LookAtClaims(const LocalFrame& frame, const VisibilityMap& map,
                                       Outputs& outputs) {
   const TrustConfig& config = settings_->priority.trust;
@@ -64,11 +69,7 @@ void PriorityPerception::LookAtClaims(const LocalFrame& frame, const VisibilityM
     if (!link.has_last || !link.place.IsDue(frame.stamp, config.place)) continue;
     const double age_s = ToSeconds(frame.stamp - link.last.stamp);
     if (std::abs(age_s) > kMaxClaimAge_s) continue;
-    if (link.height_m && ego_height_m_ &&
-        std::abs(*link.height_m - *ego_height_m_) >
-            settings_->priority.safe.max_height_difference_m) {
-      continue;
-    }
+    if (IsOnAnotherLevel(link)) continue;
     if (IsVouchedFor(link)) {
       link.place.OnVouched();
       continue;
@@ -86,48 +87,49 @@ std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> PriorityPerception::LookAr
   const ClaimedPlaceConfig& config = settings_->priority.trust.place;
   std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> looks{};
   const ClaimInOdometry& claim = link.last;
+  const double age_s = ToSeconds(frame.stamp - claim.stamp);
+  const Eigen::Vector2d p_O = claim.p_O + age_s * claim.velocity_O();
+  if ((p_O - frame.ego.X_OB.origin().vector()).norm() > config.max_distance_m) return looks;
+  const double across_m = std::sqrt(config.bias_sigma_m * config.bias_sigma_m +
+                                    0.5 * (claim.noise.trace() + claim.alignment.trace()));
+  const double along_m = std::hypot(across_m, kStalePositionSigma_s * claim.speed_mps);
   const double c = std::cos(claim.yaw_rad);
   const double s = std::sin(claim.yaw_rad);
-  const double age_s = ToSeconds(frame.stamp - claim.stamp);
-  const Eigen::Vector2d p_O = claim.p_O + age_s * claim.speed_mps * Eigen::Vector2d(c, s);
-  if ((p_O - frame.ego.X_OB.origin().vector()).norm() > config.max_distance_m) return looks;
-  const double variance = config.bias_sigma_m * config.bias_sigma_m +
-                          0.5 * (claim.noise.trace() + claim.alignment.trace());
-  const double across_m = std::sqrt(variance);
-  const double along_m = std::hypot(across_m, kStale_s * claim.speed_mps);
-  for (std::size_t i = 0; i < ClaimedPlace::kPlaces; ++i) {
-    const ClaimedPlace::Place& place = ClaimedPlace::Places()[i];
-    const double x = along_m * place.along;
-    const double y = across_m * place.across;
-    const Occluder footprint{.centre_O = p_O + Eigen::Vector2d(c * x - s * y, s * x + c * y),
-                             .yaw_rad = claim.yaw_rad,
-                             .length_m = link.length_m.value_or(4.5),
-                             .width_m = link.width_m.value_or(1.8),
-                             .position_sigma_m = kPlaceSigma_m};
-    bool is_taken = false;
-    bool is_occupied = false;
-    for (const LocalTrack& track : frame.tracks) {
-      if (!WasHit(track, frame.stamp)) continue;
-      const double sigma_m =
-          std::sqrt(0.5 * (track.state_O.covariance(kX, kX) + track.state_O.covariance(kY, kY)));
-      if (IsHeldByAnother(track.id, link.sender) || IsAnothers(track.id, link.sender)) {
-        is_taken = is_taken || AreClose(footprint, track, -0.5);
-        continue;
-      }
-      if (!AreClose(footprint, track, config.slack_m + sigma_m)) continue;
-      const double speed_mps =
-          std::abs(std::abs(claim.speed_mps) - std::abs(track.state_O.mean[kSpeed]));
-      const double speed_sigma_mps = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
-      is_occupied = is_occupied || speed_mps <= config.slack_mps + speed_sigma_mps;
+  std::array<Occluder, ClaimedPlace::kPlaces> footprints;
+  for (std::size_t i = 0; i < footprints.size(); ++i) {
+    const double x = along_m * ClaimedPlace::Places()[i].along;
+    const double y = across_m * ClaimedPlace::Places()[i].across;
+    footprints[i] = {.centre_O = p_O + Eigen::Vector2d(c * x - s * y, s * x + c * y),
+                     .yaw_rad = claim.yaw_rad,
+                     .length_m = link.length_m.value_or(4.5),
+                     .width_m = link.width_m.value_or(1.8),
+                     .position_sigma_m = kPlaceSigma_m};
+  }
+  std::array<bool, ClaimedPlace::kPlaces> is_taken{};
+  std::array<bool, ClaimedPlace::kPlaces> is_occupied{};
+  for (const LocalTrack& track : frame.tracks) {
+    if (!WasHit(track, frame.stamp)) continue;
+    const StateMatrix& P = track.state_O.covariance;
+    const bool is_taken_track =
+        IsHeldByAnother(track.id, link.sender) || IsAnothers(track.id, link.sender);
+    const double speed_mps =
+        std::abs(std::abs(claim.speed_mps) - std::abs(track.state_O.mean[kSpeed]));
+    if (!is_taken_track && speed_mps > config.slack_mps + std::sqrt(P(kSpeed, kSpeed))) continue;
+    const double slack_m =
+        is_taken_track ? kTakenSlack_m : config.slack_m + std::sqrt(0.5 * (P(kX, kX) + P(kY, kY)));
+    auto& those = is_taken_track ? is_taken : is_occupied;
+    for (std::size_t i = 0; i < footprints.size(); ++i) {
+      those[i] = those[i] || AreClose(footprints[i], track, slack_m);
     }
-    if (!is_occupied && std::abs(claim.speed_mps) < kStanding_mps) {
-      is_occupied = map.HasStandingReturn(footprint.centre_O, kStandingReach_m);
-    }
-    if (is_occupied) {
+  }
+  const bool may_stand = std::abs(claim.speed_mps) < kStanding_mps;
+  for (std::size_t i = 0; i < footprints.size(); ++i) {
+    if (is_occupied[i] ||
+        (may_stand && map.HasStandingReturn(footprints[i].centre_O, kStandingReach_m))) {
       looks[i].seen = ClaimedPlace::Seen::kOccupied;
-    } else if (is_taken) {
+    } else if (is_taken[i]) {
       looks[i] = {ClaimedPlace::Seen::kEmpty, kTaken};
-    } else if (const auto detection = ClearDetection(footprint, frame, map, settings_->vehicle,
+    } else if (const auto detection = ClearDetection(footprints[i], frame, map, settings_->vehicle,
                                                      settings_->priority.bridge.least_detection)) {
       looks[i] = {ClaimedPlace::Seen::kEmpty, *detection};
     }
@@ -159,10 +161,10 @@ bool PriorityPerception::IsShifted(Timestamp now) const {
 // Not validated yet, or never: but the track is sooner this other sender's than anybody else's.
 bool PriorityPerception::IsAnothers(std::uint64_t local_id, SenderId sender) const {
   return std::ranges::any_of(pairs_.pairs(), [&](const PairTable::Pair& pair) {
-    return pair.track_id == local_id && pair.sender != sender && pair.is_assigned &&
-           pair.evidence.observations() >= settings_->priority.trust.co_observations &&
-           TrustOf(pair.sender) != TrustState::kSuspect &&
-           TrustOf(pair.sender) != TrustState::kRevoked;
+    if (pair.track_id != local_id || pair.sender == sender || !pair.is_assigned) return false;
+    if (pair.evidence.observations() < settings_->priority.trust.co_observations) return false;
+    const TrustState state = TrustOf(pair.sender);
+    return state != TrustState::kSuspect && state != TrustState::kRevoked;
   });
 }
 

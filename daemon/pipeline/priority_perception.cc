@@ -16,10 +16,6 @@ constexpr double kAlignmentStep_m = 2.0;
 constexpr double kTurns_s = 0.5;       // So many seconds' turns may be saved up.
 constexpr double kHeightMemory = 0.1;  // Weight of a new height in the smoothed one.
 
-Eigen::Vector2d VelocityOf(const ClaimInOdometry& claim) {
-  return claim.speed_mps * Eigen::Vector2d(std::cos(claim.yaw_rad), std::sin(claim.yaw_rad));
-}
-
 double Smoothed(const std::optional<double>& old, double value) {
   return old ? *old + kHeightMemory * (value - *old) : value;
 }
@@ -94,12 +90,10 @@ void PriorityPerception::OnClaim(const Claim& claim, const EgoState& ego, Output
   if (vehicle == nullptr) vehicle = Inherit(*link, here, outputs);
   link = FindLink(claim.sender);  // Inherit may have moved it.
   CompareWithSensors(*link, vehicle, here);
-  if (vehicle != nullptr && vehicle->id == 0) {
-    vehicle = nullptr;  // Torn from its LOCAL track.
-  } else if (vehicle != nullptr) {
-    UseClaim(*link, *vehicle, here);
-  } else {
+  if (vehicle == nullptr) {
     TryValidate(*link, here);
+  } else if (vehicle->id != 0) {  // Not torn from its LOCAL track just now.
+    UseClaim(*link, *vehicle, here);
   }
   link->last = here;
   link->has_last = true;
@@ -108,7 +102,7 @@ void PriorityPerception::OnClaim(const Claim& claim, const EgoState& ego, Output
                      .certificate = link->certificate,
                      .last = here.stamp,
                      .p_O = here.p_O,
-                     .v_O = VelocityOf(here),
+                     .v_O = here.velocity_O(),
                      .penalty = link->trust.penalty(),
                      .place = link->place});
   } else {
@@ -176,8 +170,7 @@ void PriorityPerception::Publish(Timestamp at, const EgoState& ego_at, TrackList
 }
 
 TrustState PriorityPerception::TrustOf(SenderId sender) const {
-  const auto at = std::ranges::lower_bound(links_, sender, {}, &Link::sender);
-  if (at != links_.end() && at->sender == sender) return at->trust.state();
+  if (const Link* link = FindLink(sender)) return link->trust.state();
   const Tombstones::Stone* stone = tombstones_.Find(sender);
   const bool has_penalty = stone != nullptr && stone->penalty.state != TrustState::kNone;
   return has_penalty ? stone->penalty.state : TrustState::kUnknown;
@@ -201,12 +194,16 @@ std::size_t PriorityPerception::checkpoint_bytes() const {
          paper_.entries().size_bytes();
 }
 
-PriorityPerception::Link* PriorityPerception::FindLink(SenderId sender) {
+const PriorityPerception::Link* PriorityPerception::FindLink(SenderId sender) const {
   const auto at = std::ranges::lower_bound(links_, sender, {}, &Link::sender);
   return at != links_.end() && at->sender == sender ? &*at : nullptr;
 }
 
-PriorityPerception::Sensed* PriorityPerception::FindSensed(std::uint64_t local_id) {
+PriorityPerception::Link* PriorityPerception::FindLink(SenderId sender) {
+  return const_cast<Link*>(std::as_const(*this).FindLink(sender));
+}
+
+const PriorityPerception::Sensed* PriorityPerception::FindSensed(std::uint64_t local_id) const {
   if (local_id == 0) return nullptr;
   const auto at = std::ranges::find_if(
       sensed_, [&](const Sensed& sensed) { return sensed.track.id == local_id; });
@@ -260,7 +257,7 @@ PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
       stone = *own;
     } else {
       stone = tombstones_.TakeFor(claim.sender, claim.certificate, claim.first_heard, here.stamp,
-                                  here.p_O, VelocityOf(here), config.trust.tombstone);
+                                  here.p_O, here.velocity_O(), config.trust.tombstone);
     }
     const bool is_penalised = stone && stone->penalty.state != TrustState::kNone;
     if (is_full && !MakeRoom(is_penalised)) return nullptr;

@@ -11,6 +11,7 @@
 #include "daemon/alignment/alignment.h"
 #include "daemon/association/pair_table.h"
 #include "daemon/association/paper_list.h"
+#include "daemon/base/scratch.h"
 #include "daemon/data/bias.h"
 #include "daemon/data/claim.h"
 #include "daemon/data/outputs.h"
@@ -113,10 +114,11 @@ class PriorityPerception {
   };
 
   Link* FindLink(SenderId sender);
+  [[nodiscard]] const Link* FindLink(SenderId sender) const;
   Link* FollowSender(const Claim& claim, const ClaimInOdometry& here, const EgoState& ego);
   bool TakeTurn(Timestamp now);
   bool MakeRoom(bool for_penalised);
-  Sensed* FindSensed(std::uint64_t local_id);
+  [[nodiscard]] const Sensed* FindSensed(std::uint64_t local_id) const;
   PriorityVehicle* VehicleOf(SenderId sender);
   [[nodiscard]] bool IsHeld(std::uint64_t local_id) const;
   [[nodiscard]] bool IsHeldByAnother(std::uint64_t local_id, SenderId sender) const;
@@ -133,7 +135,8 @@ class PriorityPerception {
                    Outputs& outputs);
   void TakeSensorUpdates(PriorityVehicle& vehicle, const Sensed& sensed, const LocalFrame& frame);
   void LookForReturn(PriorityVehicle& vehicle, Timestamp stamp);
-  bool IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle, Timestamp stamp);
+  [[nodiscard]] bool IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle,
+                                    Timestamp stamp) const;
   std::optional<Finding> Contradiction(PriorityVehicle& vehicle, Timestamp stamp) const;
   void LookAtPlace(PriorityVehicle& vehicle, const LocalFrame& frame, const VisibilityMap& map);
 
@@ -142,6 +145,7 @@ class PriorityPerception {
   [[nodiscard]] std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> LookAround(
       const Link& link, const LocalFrame& frame, const VisibilityMap& map) const;
   [[nodiscard]] bool IsVouchedFor(const Link& link) const;
+  [[nodiscard]] bool IsOnAnotherLevel(const Link& link) const;
   void JudgeCommonMode(Timestamp now);
 
   // Claim.
@@ -168,8 +172,8 @@ class PriorityPerception {
   std::optional<Timestamp> turns_refilled_;
   std::vector<Sensed> sensed_;  // By LOCAL id; all tracks of the newest frame.
   Timestamp sensed_stamp_{};
-  std::vector<SenderResidual> residual_means_;              // Work space of JudgeCommonMode().
-  std::vector<std::pair<std::uint64_t, Timestamp>> parts_;  // Work space of Remember().
+  Scratch<std::vector<SenderResidual>> residual_means_;
+  Scratch<std::vector<std::pair<std::uint64_t, Timestamp>>> parts_;
   PairTable pairs_;
   std::vector<PriorityVehicle> vehicles_;  // By id; id 0 = ended in this step.
   Tombstones tombstones_;

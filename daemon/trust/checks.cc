@@ -69,12 +69,14 @@ void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& c
   if (observation.is_partial) return;
   const double dt_s = has_any_ ? std::max(0.0, ToSeconds(observation.stamp - last_)) : 0.0;
   // A plain mean at first, so that one wild first residual does not linger; fading afterwards.
-  const double span_s = std::max(std::min(time_s_ + dt_s, config.mean_time_s), 1e-3);
-  const double w = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / span_s) : 1.0;
+  const auto weight = [&](double time_s, double memory_s) {
+    const double span_s = std::max(std::min(time_s, memory_s), 1e-3);
+    return has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / span_s) : 1.0;
+  };
+  const double w = weight(time_s_ + dt_s, config.mean_time_s);
   if (dt_s <= 1.0) time_s_ += dt_s;
   mean_ += w * (observation.residual_O - mean_);
-  const double fast_span_s = std::max(std::min(time_s_, kFastShare * config.mean_time_s), 1e-3);
-  const double w_fast = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / fast_span_s) : 1.0;
+  const double w_fast = weight(time_s_, kFastShare * config.mean_time_s);
   sensed_sigma_ += w * (observation.sensed_sigma_m - sensed_sigma_);
   // What was not known of the length at the start of a drift counts until its end.
   const double w_slow = has_any_ ? 1.0 - std::exp(-dt_s / (10.0 * config.mean_time_s)) : 1.0;
@@ -82,8 +84,7 @@ void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& c
   fast_mean_ += w_fast * (observation.residual_O - fast_mean_);
   speed_ += w * (observation.speed_residual_mps - speed_);
   speed_sigma_ += w * (observation.speed_sigma_mps - speed_sigma_);
-  const double long_span_s = std::max(std::min(time_s_, 3.0 * config.mean_time_s), 1e-3);
-  const double w_long = has_any_ ? 1.0 - std::exp(-std::max(dt_s, 1e-3) / long_span_s) : 1.0;
+  const double w_long = weight(time_s_, 3.0 * config.mean_time_s);
   accel_ += w_long * (observation.accel_residual_mps2 - accel_);
   accel_sigma_ += w_long * (observation.accel_sigma_mps2 - accel_sigma_);
   if (observation.yaw_residual_rad) {

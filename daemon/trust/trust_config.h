@@ -12,12 +12,11 @@ namespace v2vouch {
 /// Thresholds of the trust checks and of the state machine. "Withdraw" stops
 /// believing, "accuse" reports a liar.
 struct TrustConfig {
-  int candidate_messages = 3;  ///< Consistent messages that make a CANDIDATE.
-  int co_observations = 10;    ///< Claims seen together with the sensors before VALIDATED ...
-  double co_observed_s = 1.5;  ///< ... and over this long.
-  int again_observations =
-      5;  ///< For a sender relied on within the last again_s and not blamed ...
-  double again_observed_s = 0.6;  ///< ... so many, over so long, suffice.
+  int candidate_messages = 3;     ///< Consistent messages that make a CANDIDATE.
+  int co_observations = 10;       ///< Claims seen together with the sensors before VALIDATED ...
+  double co_observed_s = 1.5;     ///< ... and over this long.
+  int again_observations = 5;     ///< Relied on in the last again_s and not blamed: so many ...
+  double again_observed_s = 0.6;  ///< ... over so long suffice.
   double again_s = 10.0;
   double mean_time_s = 1.0;       ///< Residuals are averaged over this time.
   double level_withdraw_m = 5.0;  ///< C8: level of the raw residual.
