@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "daemon/base/angle.h"
 #include "daemon/models/ctra.h"
@@ -21,6 +22,11 @@ constexpr int kBreakMemory = 30;  // Messages for which a break of the own motio
 constexpr int kMostVelocityDoubts = 2;
 constexpr double kHeirSpeed_mps = 2.0;
 constexpr double kHeirYaw_rad = FromDegrees(20.0);
+
+// Findings that a second device under the same id brings, whoever of the two lies.
+bool IsOfAJump(std::string_view check) {
+  return check == "position_jump" || check == "two_places" || check == "own_motion";
+}
 
 }  // namespace
 
@@ -75,9 +81,7 @@ void PriorityPerception::JudgeMessages(Link& link, const PriorityVehicle* vehicl
   link.trust.OnMessage(here.stamp, is_consistent, config);
   if (!claim.finding) return;
   const bool is_seen = vehicle != nullptr && vehicle->is_supported && link.trust.is_relied_on();
-  const bool is_jump =
-      claim.finding->check == "position_jump" || claim.finding->check == "own_motion";
-  if (is_seen && is_jump && link.odd_claims == 0) return;
+  if (is_seen && link.odd_claims == 0 && IsOfAJump(claim.finding->check)) return;
   link.trust.OnFinding(here.stamp, *claim.finding, MayAccuse(here.stamp));
 }
 

@@ -137,8 +137,10 @@ class Scene {
   }
 
   void Say(SenderId sender, const Eigen::Vector2d& p, double yaw_rad, double speed_mps,
-           double noise_m = 0.5, double height_m = 60.0) {
+           double noise_m = 0.5, double height_m = 60.0,
+           const std::optional<Finding>& finding = std::nullopt) {
     Claim claim;
+    claim.finding = finding;
     claim.sender = sender;
     claim.received = now;
     claim.p_E = plane
@@ -428,6 +430,26 @@ TEST(PriorityPerception, TeleportInViewOrHiddenIsWithdrawn) {
     });
     EXPECT_TRUE(scene.Priority().empty());
     EXPECT_EQ(scene.perception.TrustOf(1), TrustState::kSuspect);
+  }
+}
+
+// The message stream then jumps with every message of either; who of them lies is seen by the
+// sensors alone.
+TEST(PriorityPerception, ImpersonatedVehicleGoesOnWhileItIsSeen) {
+  for (const char* check : {"position_jump", "two_places", "own_motion"}) {
+    Scene scene = Validated(7);
+    const Finding jump{check, Verdict::kWithdraw, "displacement_m", 12.0, 3.0};
+    scene.Run(4.0, [&] {
+      const Car& car = scene.cars[0];
+      if (scene.frames % 2 == 0) {
+        scene.Say(1, car.p + Eigen::Vector2d(1.0, -0.8), kPi, 5.0, 0.5, 60.0, jump);
+      } else if (scene.frames % 4 == 1) {
+        scene.Say(1, car.p + Eigen::Vector2d(0.0, -12.0), kPi, 5.0, 0.3, 60.0, jump);
+      }
+      ASSERT_EQ(scene.Priority().size(), 1u) << check;
+      EXPECT_LT(ErrorOf(scene.Priority()[0], car), 1.0) << check;
+    });
+    EXPECT_TRUE(scene.outputs.reports.empty()) << check;
   }
 }
 
