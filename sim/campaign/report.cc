@@ -88,15 +88,16 @@ std::string AttackTable(const std::vector<const Group*>& groups) {
 std::string HonestTable(const Summary& summary) {
   std::string rows =
       Header({"condition", "runs", "vehicle-hours", "accusations per hour", "withdrawn [% of time]",
-              "validated [%]", "occlusions", "survived [%]", "same id [%]", "ghosts"});
+              "validated [%]", "held [%]", "occlusions", "survived [%]", "same id [%]", "ghosts"});
   const auto add = [&](const std::string& name, const Group& group) {
     const HonestTreatment& h = group.attack.honest;
     const double hours = h.vehicle_s / 3600.0;
     rows += "<tr>" + Cell(Escape(name)) + Cell(std::to_string(group.attack.runs)) +
             Cell(Fixed(hours, 2)) +
             Cell(hours > 0.0 ? std::optional(h.accusations / hours) : std::nullopt, 3) +
-            Percent(h.withdrawn_s, h.vehicle_s) + Percent(h.held_s, h.holdable_s) +
-            Cell(std::to_string(h.bridges)) + Percent(h.bridges_survived, h.bridges) +
+            Percent(h.withdrawn_s, h.vehicle_s) + Percent(h.validated, h.in_view) +
+            Percent(h.held_s, h.holdable_s) + Cell(std::to_string(h.bridges)) +
+            Percent(h.bridges_survived, h.bridges) +
             Percent(h.bridges_same_id, h.bridges_survived) +
             Cell(std::to_string(group.attack.ghosts)) + "</tr>\n";
   };

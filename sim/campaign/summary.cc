@@ -47,8 +47,9 @@ Group Pool(const std::vector<const RunRecord*>& records,
   }
   group.attack = evaluation::PoolAttack(ours);
   if (!papers.empty()) group.paper = evaluation::PoolAttack(papers);
-  if (with.holdable_s > 0.0 && without.holdable_s > 0.0 && without.held_s > 0.0) {
-    group.validated_ratio = (with.held_s / with.holdable_s) / (without.held_s / without.holdable_s);
+  const auto share = [](const HonestTreatment& h) { return 1.0 * h.validated / h.in_view; };
+  if (with.in_view > 0 && without.validated > 0) {
+    group.validated_ratio = share(with) / share(without);
   }
   return group;
 }

@@ -30,7 +30,8 @@ Json HonestJson(const HonestTreatment& h) {
           {"accusations_per_vehicle_hour", Ratio(h.accusations, hours)},
           {"withdrawals", h.withdrawals},
           {"withdrawn_share", Ratio(h.withdrawn_s, h.vehicle_s)},
-          {"validated_share", Ratio(h.held_s, h.holdable_s)},
+          {"validated_share", Ratio(h.validated, h.in_view)},
+          {"held_share", Ratio(h.held_s, h.holdable_s)},
           {"occlusions", h.bridges},
           {"bridging_survival", Ratio(h.bridges_survived, h.bridges)},
           {"ids_kept", Ratio(h.bridges_same_id, h.bridges_survived)}};
@@ -148,6 +149,7 @@ std::string HonestLine(const Group& group, bool is_variant) {
   return Padded(is_variant ? "  " + group.variant : group.id, 24) +
          Cell(Number(group.attack.runs), 0, 5) + Cell(Number(hours), 2) +
          Cell(Share(h.accusations, hours), 2) + Cell(Share(100.0 * h.withdrawn_s, h.vehicle_s), 2) +
+         Cell(Share(100.0 * h.validated, h.in_view), 1) +
          Cell(Share(100.0 * h.held_s, h.holdable_s), 1) + Cell(Number(h.bridges), 0) +
          Cell(Share(100.0 * h.bridges_survived, h.bridges), 1) +
          Cell(Share(100.0 * h.bridges_same_id, h.bridges_survived), 1) + "\n";

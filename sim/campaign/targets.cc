@@ -108,7 +108,7 @@ Reading AccusationsPerHour(const Group& group) {
   return Share(honest.accusations, honest.vehicle_s / 3600.0);
 }
 Reading Validated(const Group& group) {
-  return Share(group.attack.honest.held_s, group.attack.honest.holdable_s);
+  return Share(group.attack.honest.validated, group.attack.honest.in_view);
 }
 Reading Survival(const Group& group) {
   return Share(group.attack.honest.bridges_survived, group.attack.honest.bridges);

@@ -28,13 +28,17 @@ struct Cell {
   Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
 };
 
-/// Adds up the time honest devices were heard and mistrusted.
+/// Adds up the time honest devices were heard and mistrusted, and who was relied on in view.
 void TakeMessages(const RunLog& log, const Senders& senders,
                   const std::vector<JudgedMessage>& judged, HonestTreatment& result) {
   std::map<std::int64_t, Timestamp> last;
   for (const JudgedMessage& message : judged) {
     const BsmTruth& m = log.bsm_truths[message.truth];
     if (senders.IsAttacker(m.device)) continue;
+    if (message.has_verdict && message.counts(m)) {
+      ++result.in_view;
+      result.validated += message.is_relied_on ? 1 : 0;
+    }
     const auto ego = log.truth.ego.At(m.stamp);
     if (!ego || !m.honest.p_W.allFinite()) continue;
     if ((m.honest.p_W - ego->position()).norm() > HonestTreatment::kHeard_m) continue;
@@ -221,6 +225,8 @@ void HonestTreatment::Add(const HonestTreatment& other) {
   withdrawals += other.withdrawals;
   senders += other.senders;
   accused += other.accused;
+  in_view += other.in_view;
+  validated += other.validated;
   holdable_s += other.holdable_s;
   held_s += other.held_s;
   bridges += other.bridges;

@@ -20,10 +20,14 @@ struct HonestTreatment {
   double vehicle_s = 0.0;
   /// ... of it under SUSPECT or REVOKED, by the state at each message's use.
   double withdrawn_s = 0.0;
-  int accusations = 0;      ///< ACCUSE verdicts on honest senders, one per sender, check and event.
-  int withdrawals = 0;      ///< WITHDRAW likewise.
-  int senders = 0;          ///< Honest devices heard.
-  int accused = 0;          ///< ... with at least one ACCUSE.
+  int accusations = 0;  ///< ACCUSE verdicts on honest senders, one per sender, check and event.
+  int withdrawals = 0;  ///< WITHDRAW likewise.
+  int senders = 0;      ///< Honest devices heard.
+  int accused = 0;      ///< ... with at least one ACCUSE.
+  /// Messages in joint view, past the time that validation takes; false ones are none of the
+  /// honest.
+  int in_view = 0;
+  int validated = 0;        ///< ... whose sender was VALIDATED or BRIDGED at use.
   double holdable_s = 0.0;  ///< Time honest V2V vehicles could be in PRIORITY (Bound).
   double held_s = 0.0;      ///< ... and were, matched within 10 m.
   /// Honest V2V vehicles hidden for 3..6 s on end (a glimpse below 0.5 s ends nothing), in PRIORITY

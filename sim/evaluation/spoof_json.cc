@@ -111,6 +111,8 @@ Json FromHonest(const HonestTreatment& h) {
           {"withdrawals", h.withdrawals},
           {"senders", h.senders},
           {"accused", h.accused},
+          {"in_view", h.in_view},
+          {"validated", h.validated},
           {"holdable_s", Rounded(h.holdable_s)},
           {"held_s", Rounded(h.held_s)},
           {"bridges", h.bridges},
@@ -118,7 +120,8 @@ Json FromHonest(const HonestTreatment& h) {
           {"bridges_same_id", h.bridges_same_id},
           {"accusations_per_vehicle_hour", Share(h.accusations, hours)},
           {"withdrawn_share", Share(h.withdrawn_s, h.vehicle_s)},
-          {"validated_share", Share(h.held_s, h.holdable_s)},
+          {"validated_share", Share(h.validated, h.in_view)},
+          {"held_share", Share(h.held_s, h.holdable_s)},
           {"bridging_survival", Share(h.bridges_survived, h.bridges)}};
 }
 
@@ -130,6 +133,8 @@ HonestTreatment ToHonest(const Json& json) {
   h.withdrawals = json.value("withdrawals", 0);
   h.senders = json.value("senders", 0);
   h.accused = json.value("accused", 0);
+  h.in_view = json.value("in_view", 0);
+  h.validated = json.value("validated", 0);
   h.holdable_s = json.value("holdable_s", 0.0);
   h.held_s = json.value("held_s", 0.0);
   h.bridges = json.value("bridges", 0);
@@ -249,8 +254,10 @@ std::string SpoofTable(const SpoofRun& run) {
   out += Line("accusations, withdrawals",
               std::to_string(h.accusations) + ", " + std::to_string(h.withdrawals));
   out += Line("withdrawn share of time", Percent(h.withdrawn_s, h.vehicle_s));
-  out += Line("validated share",
-              Percent(h.held_s, h.holdable_s) + " of " + Fixed(h.holdable_s, 1) + " s");
+  out += Line("validated share", Percent(h.validated, h.in_view) + " of " +
+                                     std::to_string(h.in_view) + " messages in view");
+  out += Line("held in PRIORITY",
+              Percent(h.held_s, h.holdable_s) + " of " + Fixed(h.holdable_s, 1) + " s possible");
   out += Line("occlusions of 3..6 s", std::to_string(h.bridges) + ", survived " +
                                           std::to_string(h.bridges_survived) + ", same id after " +
                                           std::to_string(h.bridges_same_id));

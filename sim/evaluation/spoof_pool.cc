@@ -115,10 +115,10 @@ AttackFigures PoolAttack(std::span<const SpoofRun* const> runs) {
 }
 
 std::optional<double> CompositeScore(std::optional<double> weakest, const HonestTreatment& honest) {
-  if (!weakest || honest.vehicle_s <= 0.0 || honest.holdable_s <= 0.0) return std::nullopt;
+  if (!weakest || honest.vehicle_s <= 0.0 || honest.in_view <= 0) return std::nullopt;
   const double accusations_per_hour = honest.accusations / (honest.vehicle_s / 3600.0);
-  return 100.0 * *weakest * (1.0 - std::min(1.0, accusations_per_hour)) *
-         (honest.held_s / honest.holdable_s);
+  return 100.0 * *weakest * (1.0 - std::min(1.0, accusations_per_hour)) * honest.validated /
+         honest.in_view;
 }
 
 }  // namespace v2vouch::evaluation

@@ -24,8 +24,8 @@ RunRecord Record(Kind kind, const std::string& id, const std::string& variant, s
   record.job.seed = seed;
   record.local_digest = "same";
   record.ours.honest.vehicle_s = 360.0;
-  record.ours.honest.holdable_s = 100.0;
-  record.ours.honest.held_s = 98.0;
+  record.ours.honest.in_view = 100;
+  record.ours.honest.validated = 98;
   record.ours.honest.bridges = 10;
   record.ours.honest.bridges_survived = 9;
   return record;
@@ -72,7 +72,7 @@ TEST(Summary, ComparesWithTheSameRunWithoutAttack) {
   RunRecord plain = Record(Kind::kPlain, "", "", 1);
   RunRecord changed = Attack("A22", "x40", 1, 0.1);
   changed.local_digest = "other";
-  changed.ours.honest.held_s = 49.0;
+  changed.ours.honest.validated = 49;
   const RunRecord alone = Attack("A22", "x40", 2, 0.1);  // Nothing to compare with.
   const Summary s = Summarise({plain, changed, alone});
   EXPECT_EQ(s.attacks[0].digests_compared, 1);
@@ -112,7 +112,7 @@ TEST(Targets, AreTheWorstVariantsAndNeverMeansMissed) {
 TEST(Targets, HonestConditionsHaveTheirs) {
   RunRecord h1 = Record(Kind::kHonest, "H1", "", 1);
   RunRecord h4 = Record(Kind::kHonest, "H4", "", 1);
-  h4.ours.honest.held_s = 85.0;
+  h4.ours.honest.validated = 85;
   RunRecord h3 = Record(Kind::kHonest, "H3", "", 1);
   h3.ours.honest.accusations = 1;
   const auto targets = JudgeTargets(Summarise({h1, h3, h4}));

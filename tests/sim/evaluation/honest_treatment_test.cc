@@ -92,6 +92,17 @@ TEST_F(Bridging, ATrackThatStaysWithinTwoMetresSurvives) {
   EXPECT_NEAR(h.held_s, h.holdable_s, 1e-9);
 }
 
+TEST(HonestTreatment, WhoIsInViewCountsOnceValidationWasPossible) {
+  SpoofScene scene(12.0);
+  scene.AddCar(1, {40.0, 0.0}, 0.0, kFirst);
+  scene.Hide(1, 8.0, 10.0);
+  // VALIDATED from 4 s; hidden messages count neither way.
+  AtTenHertz(0.0, 12.0, [&](double t) { scene.Say(t, 11, kFirst, 1, t < 4.0 ? 2 : 3); });
+  const HonestTreatment h = Judged(scene);
+  EXPECT_NEAR(h.in_view, 60, 1);    // 2..8 s.
+  EXPECT_NEAR(h.validated, 40, 1);  // 4..8 s.
+}
+
 TEST_F(Bridging, ATrackThatStraysOrEndsDoesNot) {
   EXPECT_EQ(Track([](double t) { return Eigen::Vector2d(t > 7.0 ? 2.1 : 0.0, 0.0); },
                   [](double) { return 5; })

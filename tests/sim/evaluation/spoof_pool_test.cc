@@ -94,8 +94,8 @@ TEST(CompositeScore, IsTheWeakestTimesWhatTheHonestSuffer) {
   HonestTreatment honest;
   honest.vehicle_s = 10.0 * 3600.0;
   honest.accusations = 2;
-  honest.holdable_s = 100.0;
-  honest.held_s = 95.0;
+  honest.in_view = 100;
+  honest.validated = 95;
   EXPECT_NEAR(*CompositeScore(0.9, honest), 100.0 * 0.9 * 0.8 * 0.95, 1e-9);
   honest.accusations = 20;
   EXPECT_EQ(*CompositeScore(0.9, honest), 0.0);
