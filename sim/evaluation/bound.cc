@@ -7,29 +7,14 @@
 #include <string_view>
 
 #include "sim/evaluation/information_filter.h"
+#include "sim/evaluation/sight.h"
 
 namespace v2vouch::evaluation {
 namespace {
 
 constexpr double kForgetLooks_s = 1.0;  // A lone look counts no longer than this.
-constexpr double kCertain = 0.5;        // A look with this detection probability is seeing.
 constexpr double kFresh_s = 1.0;        // A sender heard this recently is being heard.
 constexpr double kSeen_s = 0.3;         // A vehicle looked at this recently is being seen.
-
-/// The truth's own detection probability for one sensor of the scenario. Logs name a sensor by its
-/// channel or by its bare name; a bare name shared by a radar and a camera stands for the radar
-/// first and the camera last.
-double DetectionProbability(const TruthSample& sample, const SensorSpec& sensor) {
-  const std::string_view channel = sensor.channel;
-  const std::string_view bare = channel.substr(channel.find('_') + 1);
-  const TruthLook* found = nullptr;
-  for (const TruthLook& look : sample.looks) {
-    if (look.sensor == channel) return look.detection_probability;
-    if (look.sensor != bare) continue;
-    if (found == nullptr || !sensor.is_radar) found = &look;
-  }
-  return found == nullptr ? 0.0 : std::clamp(found->detection_probability, 0.0, 1.0);
-}
 
 /// Own-sensor frames in order of arrival; the nominal periods where the log holds none.
 std::vector<SensorLook> Looks(const RunLog& log) {
@@ -93,7 +78,7 @@ class Walk {
       last_starting_ = look.received;
     }
     last_look_ = look.received;
-    if (p >= kCertain) last_seen_ = look.received;
+    if (p >= kSeeing) last_seen_ = look.received;
   }
 
   void Hear(const BsmArrival& bsm) {

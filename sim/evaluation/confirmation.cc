@@ -7,24 +7,16 @@
 #include <optional>
 
 #include "sim/evaluation/placing.h"
+#include "sim/evaluation/sight.h"
 
 namespace v2vouch::evaluation {
 namespace {
 
-// A look that is more likely to miss than to see asks too much of "confirmed in three".
-constexpr double kFairLook = 0.5;
 constexpr double kStanding_mps = 0.5;
 // A track farther off than this from the vehicle's end is another's, though GOSPA pairs them.
 constexpr double kBeyond_m = 2.0;
 // Who comes into sight at the very end is no case of a late confirmation.
 constexpr Duration kLeastTime = std::chrono::seconds(1);
-
-double ProbabilityOf(const TruthSample& sample, const std::string& channel) {
-  for (const TruthLook& look : sample.looks) {
-    if (look.sensor == channel) return look.detection_probability;
-  }
-  return 0.0;
-}
 
 struct Waiting {
   FirstListing figures;
@@ -63,15 +55,15 @@ Confirmation JudgeConfirmation(const RunLog& log, const ScoringSettings& setting
   std::stable_sort(looks.begin(), looks.end(),
                    [](const auto& a, const auto& b) { return a.received < b.received; });
   const auto take_look = [&](const SensorLook& look) {
-    const std::string& channel = log.specs.sensors[look.sensor].channel;
+    const SensorSpec& sensor = log.specs.sensors[look.sensor];
     for (std::size_t o = 0; o < truth.objects.size(); ++o) {
       const TruthObject& object = truth.objects[o];
       Waiting& vehicle = waiting[o];
       if (!object.is_vehicle() || vehicle.figures.is_listed) continue;
       const TruthSample* sample = object.motion.InForce(look.stamp);
       if (sample == nullptr) continue;
-      const double probability = ProbabilityOf(*sample, channel);
-      if (probability < kFairLook) continue;
+      const double probability = DetectionProbability(*sample, sensor);
+      if (probability < kSeeing) continue;  // Asks too much of "confirmed in three".
       if (!vehicle.first_look) {
         vehicle.first_look = look.stamp;
         vehicle.figures.is_standing = std::abs(sample->motion.speed_mps) < kStanding_mps;

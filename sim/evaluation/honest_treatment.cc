@@ -9,8 +9,10 @@
 
 #include "sim/evaluation/bound.h"
 #include "sim/evaluation/gospa.h"
+#include "sim/evaluation/joint_view.h"
 #include "sim/evaluation/placing.h"
 #include "sim/evaluation/scoring.h"
+#include "sim/evaluation/sight.h"
 
 namespace v2vouch::evaluation {
 namespace {
@@ -28,20 +30,58 @@ struct Cell {
   Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
 };
 
+/// Since when both kinds of sensors have seen each vehicle.
+class Views {
+ public:
+  explicit Views(const RunLog& log) {
+    for (const TruthObject& object : log.truth.objects) {
+      std::vector<bool>& seen = seen_[object.id];
+      std::optional<Timestamp> since;
+      for (const TruthSample& sample : object.motion.samples()) {
+        if (!IsSeenByBoth(sample, log.specs)) {
+          since.reset();
+        } else if (!since) {
+          since = sample.stamp;
+        }
+        seen.push_back(since && ToSeconds(sample.stamp - *since) >= kEligibleAfter_s);
+      }
+      samples_[object.id] = &object.motion.samples();
+    }
+  }
+
+  [[nodiscard]] bool IsSeen(std::int64_t vehicle, Timestamp t) const {
+    const auto found = samples_.find(vehicle);
+    if (found == samples_.end()) return false;
+    const std::vector<TruthSample>& samples = *found->second;
+    const auto after = std::ranges::upper_bound(samples, t, {}, &TruthSample::stamp);
+    if (after == samples.begin()) return false;
+    return seen_.at(vehicle)[static_cast<std::size_t>(after - samples.begin() - 1)];
+  }
+
+ private:
+  std::map<std::int64_t, const std::vector<TruthSample>*> samples_;
+  std::map<std::int64_t, std::vector<bool>> seen_;  // By sample: long enough.
+};
+
 /// Adds up the time honest devices were heard and mistrusted, and who was relied on in view.
 void TakeMessages(const RunLog& log, const Senders& senders,
                   const std::vector<JudgedMessage>& judged, HonestTreatment& result) {
   std::map<std::int64_t, Timestamp> last;
+  const Views views(log);
   for (const JudgedMessage& message : judged) {
     const BsmTruth& m = log.bsm_truths[message.truth];
     if (senders.IsAttacker(m.device)) continue;
-    if (message.has_verdict && message.counts(m)) {
+    const auto ego = log.truth.ego.At(m.stamp);
+    if (!ego || !m.honest.p_W.allFinite()) continue;
+    const double distance_m = (m.honest.p_W - ego->position()).norm();
+    if (distance_m > HonestTreatment::kHeard_m) continue;
+    const bool is_near =
+        distance_m >= JointView::kNearest_m && distance_m <= JointView::kFarthest_m;
+    const bool is_seen = is_near && views.IsSeen(m.vehicle, m.stamp);
+    if (is_seen && message.has_verdict && !message.is_contested) {
       ++result.in_view;
       result.validated += message.is_relied_on ? 1 : 0;
     }
-    const auto ego = log.truth.ego.At(m.stamp);
-    if (!ego || !m.honest.p_W.allFinite()) continue;
-    if ((m.honest.p_W - ego->position()).norm() > HonestTreatment::kHeard_m) continue;
     const auto [before, is_new] = last.try_emplace(m.device, m.stamp);
     const double gap_s = is_new ? 0.0 : ToSeconds(m.stamp - before->second);
     before->second = m.stamp;

@@ -24,8 +24,8 @@ struct HonestTreatment {
   int withdrawals = 0;  ///< WITHDRAW likewise.
   int senders = 0;      ///< Honest devices heard.
   int accused = 0;      ///< ... with at least one ACCUSE.
-  /// Messages in joint view, past the time that validation takes; false ones are none of the
-  /// honest.
+  /// Messages of vehicles that a radar and a camera see, 5..100 m off, and have seen for
+  /// kEligibleAfter_s without a break: the time in which validation is possible.
   int in_view = 0;
   int validated = 0;        ///< ... whose sender was VALIDATED or BRIDGED at use.
   double holdable_s = 0.0;  ///< Time honest V2V vehicles could be in PRIORITY (Bound).
