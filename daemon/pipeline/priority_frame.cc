@@ -16,7 +16,14 @@ namespace {
 constexpr double kReturnGate = 13.8;    // Chi-square, 2 dof, 0.999.
 constexpr double kReturnFloor_m = 0.7;  // Extent and reference point of a young track.
 constexpr double kReturnSpeed_mps = 4.0;
-constexpr double kClaimedReach_m = 2.5;
+// How far a vehicle that comes back may be from where its sender says, bias taken off: less across
+// than along, where lanes lie and where the sender's own age of position does not reach. Beside it
+// twice the doubt, but a track that is not known better than this is not taken for anybody.
+constexpr double kClaimedAlong_m = 2.5;
+constexpr double kClaimedAcross_m = 1.2;
+constexpr double kClaimedSpeed_mps = 2.5;
+constexpr double kMostDoubt_m = 1.5;
+constexpr double kMostDoubt_mps = 1.5;
 constexpr double kSlack_s = 0.5;     // A track born so long before the loss may still be its heir.
 constexpr double kPatience_s = 0.5;  // Hits of a return may lie so far apart.
 // A coast less certain than this contradicts nobody.
@@ -125,7 +132,12 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
 
   const Sensed* sensed = FindSensed(vehicle.local_id);
   if (sensed == nullptr) vehicle.local_id = 0;
-  if (sensed != nullptr && sensed->is_hit) TakeSensorUpdates(vehicle, *sensed, frame);
+  // The LOCAL track of a hidden vehicle may have gone over to what hides it.
+  if (sensed != nullptr && sensed->is_hit &&
+      (vehicle.is_supported ||
+       (!sensed->is_partial && IsWhereClaimed(sensed->track, vehicle, frame.stamp)))) {
+    TakeSensorUpdates(vehicle, *sensed, frame);
+  }
 
   const double unsupported_s = ToSeconds(frame.stamp - vehicle.last_support);
   if (vehicle.is_supported && unsupported_s > config.bridge.support_s) {
@@ -222,13 +234,20 @@ bool PriorityPerception::IsWhereClaimed(const LocalTrack& track, const PriorityV
   if (std::abs(age_s) > kPatience_s) return true;
   const Eigen::Vector2d off_O =
       claim.p_O + age_s * claim.velocity_O() - vehicle.filter.bias() - track.state_O.mean.head<2>();
-  const double sigma_m = std::sqrt(0.5 * claim.noise.trace()) + PositionSigma(track.state_O);
-  if (off_O.norm() > kClaimedReach_m + 2.0 * sigma_m) return false;
+  const double yaw_rad = claim.has_course ? claim.yaw_rad : track.state_O.mean[kYaw];
+  const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
+  const Eigen::Vector2d left(-ahead.y(), ahead.x());
+  const Eigen::Matrix2d P = claim.noise + track.state_O.covariance.topLeftCorner<2, 2>();
+  const double along_sigma_m = std::sqrt(ahead.dot(P * ahead));
+  const double across_sigma_m = std::sqrt(left.dot(P * left));
+  if (std::max(along_sigma_m, across_sigma_m) > kMostDoubt_m) return false;
+  if (std::abs(ahead.dot(off_O)) > kClaimedAlong_m + 2.0 * along_sigma_m) return false;
+  if (std::abs(left.dot(off_O)) > kClaimedAcross_m + 2.0 * across_sigma_m) return false;
   if (!claim.has_course) return true;
   const double yaw_mps = std::sqrt(track.state_O.covariance(kYaw, kYaw)) * claim.speed_mps;
   const double speed_sigma_mps = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
   return (claim.velocity_O() - track.state_O.velocity()).norm() <=
-         kSameSpeed_mps + 2.0 * std::hypot(speed_sigma_mps, yaw_mps);
+         kClaimedSpeed_mps + 2.0 * std::min(std::hypot(speed_sigma_mps, yaw_mps), kMostDoubt_mps);
 }
 
 // A vehicle comes back as its own LOCAL track, or as the nearest new one that nobody holds.

@@ -22,6 +22,7 @@ struct Car {
   double yaw_rad = 0.0;
   double speed_mps = 0.0;
   bool is_seen = true;
+  bool is_coasting = false;  // LOCAL still has a track of it that nothing hits.
   // What a tracker would know of it.
   Timestamp start{};
   int radar_hits = 0;
@@ -82,13 +83,15 @@ class Scene {
           {.id = 1, .centre_O = {15.0, 0.0}, .yaw_rad = 0.5 * kPi, .length_m = 120.0});
     }
     for (Car& car : cars) {
-      if (!car.is_seen) continue;
+      if (!car.is_seen && !car.is_coasting) continue;
       if (car.radar_hits == 0) car.start = now;
-      ++car.radar_hits;
-      car.last_radar = now;
-      if (frames % 2 == 0) {
-        ++car.camera_hits;
-        car.last_camera = now;
+      if (car.is_seen) {
+        ++car.radar_hits;
+        car.last_radar = now;
+        if (frames % 2 == 0) {
+          ++car.camera_hits;
+          car.last_camera = now;
+        }
       }
       LocalTrack track;
       track.id = car.local_id;
@@ -105,6 +108,7 @@ class Scene {
       track.radar_hits = car.radar_hits;
       track.camera_hits = car.camera_hits;
       frame.tracks.push_back(track);
+      if (!car.is_seen) continue;
       frame.updates.push_back({car.local_id, Radar(car, track.extent)});
       occluders.push_back({.id = track.id,
                            .centre_O = track.state_O.mean.head<2>(),
@@ -430,6 +434,32 @@ TEST(PriorityPerception, TeleportInViewOrHiddenIsWithdrawn) {
     });
     EXPECT_TRUE(scene.Priority().empty());
     EXPECT_EQ(scene.perception.TrustOf(1), TrustState::kSuspect);
+  }
+}
+
+// What hides a vehicle is the likeliest to be taken for it.
+TEST(PriorityPerception, AHiddenVehiclesLocalTrackThatGoesOverToItsNeighbourDragsNothing) {
+  for (const double aside_m : {-3.5, 3.5}) {
+    Scene scene = Validated(10);
+    const std::uint64_t id = scene.Priority()[0].track.id;
+    Hide(scene);
+    scene.cars[0].is_coasting = true;
+    scene.Run(0.6, [&] { scene.Honest(1); });
+    scene.cars[0].is_coasting = false;
+    Car neighbour = scene.cars[0];  // Goes on under the same LOCAL id.
+    neighbour.p.y() += aside_m;
+    neighbour.speed_mps -= 1.0;
+    neighbour.is_seen = true;
+    scene.cars.push_back(neighbour);
+    scene.Run(3.0, [&] {
+      scene.Honest(1);
+      const auto lines = scene.Priority();
+      ASSERT_EQ(lines.size(), 1u) << aside_m;
+      EXPECT_EQ(lines[0].track.id, id);
+      EXPECT_EQ(lines[0].local_id, 0u);
+      EXPECT_LT(ErrorOf(lines[0], scene.cars[0]), 1.5) << aside_m;
+    });
+    EXPECT_TRUE(scene.outputs.reports.empty());
   }
 }
 
