@@ -20,6 +20,7 @@ constexpr double kOwnMotionFloor_m = 2.0;
 constexpr double kSeen_s = 0.15;  // Co-observed means: a hit of the same moment, not of support's.
 constexpr int kBreakMemory = 30;  // Messages for which a break of the own motion is held against.
 constexpr int kMostVelocityDoubts = 2;
+constexpr double kOnePlace_m = 2.0;  // Centres of two vehicles are not so near each other.
 constexpr double kHeirSpeed_mps = 2.0;
 constexpr double kHeirYaw_rad = FromDegrees(20.0);
 
@@ -257,12 +258,20 @@ void PriorityPerception::UseClaim(Link& link, PriorityVehicle& vehicle,
   }
 }
 
+// A new track where a hidden vehicle is carried is sooner that vehicle come back.
+bool PriorityPerception::IsAnothersBridge(const LocalTrack& track, SenderId but) const {
+  return std::ranges::any_of(vehicles_, [&](const PriorityVehicle& vehicle) {
+    return vehicle.id != 0 && !vehicle.is_supported && vehicle.sender != but &&
+           (vehicle.filter.mean().head<2>() - track.state_O.mean.head<2>()).norm() <= kOnePlace_m;
+  });
+}
+
 void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
   const PriorityConfig& config = settings_->priority;
   const PairTable::Pair* pair = pairs_.AssignedTo(link.sender);
   if (pair == nullptr || IsHeld(pair->track_id)) return;
   const Sensed* sensed = FindSensed(pair->track_id);
-  if (sensed == nullptr) return;
+  if (sensed == nullptr || IsAnothersBridge(sensed->track, link.sender)) return;
   const Timestamp last_hit = sensed->track.LastHit();
   const bool is_seen = ToSeconds(here.stamp - last_hit) <= config.bridge.support_s;
   const PairEvidence& evidence = pair->evidence;

@@ -173,7 +173,9 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
   if (vehicle.empty.log_ratio() <= config.bridge.empty_log_ratio ||
       silence_s >= config.bridge.max_gap_s ||
       vehicle.BudgetLeft_s(frame.stamp, config.bridge) <= 0.0 ||
-      vehicle.filter.position_sigma_m() >= config.bridge.max_sigma_m) {
+      vehicle.filter.position_sigma_m() >= config.bridge.max_sigma_m ||
+      (vehicle.filter.mean().head<2>() - frame.ego.X_OB.origin().vector()).norm() >=
+          config.bridge.max_distance_m) {
     EndVehicle(vehicle, frame.stamp);
   }
 }

@@ -56,6 +56,28 @@ bool PriorityPerception::IsOnAnotherLevel(const Link& link) const {
              settings_->priority.safe.max_height_difference_m;
 }
 
+bool PriorityPerception::IsRecent(const Link& link, Timestamp now) {
+  return link.has_last && std::abs(ToSeconds(now - link.last.stamp)) <= kMaxClaimAge_s;
+}
+
+// Whether another sender claims the same place and motion, and the sensors see one vehicle there.
+bool PriorityPerception::IsPlaceShared(const Link& link, Timestamp now) const {
+  const SharedPlaceConfig& config = settings_->priority.trust.shared_place;
+  const auto place = [now](const ClaimInOdometry& claim) -> Eigen::Vector2d {
+    return claim.p_O + ToSeconds(now - claim.stamp) * claim.velocity_O();
+  };
+  const Eigen::Vector2d p_O = place(link.last);
+  const bool is_shared = std::ranges::any_of(links_, [&](const Link& other) {
+    return other.sender != link.sender && IsRecent(other, now) &&
+           (place(other.last) - p_O).norm() <= config.near_m &&
+           (other.last.velocity_O() - link.last.velocity_O()).norm() <= config.same_mps;
+  });
+  return is_shared && 1 == std::ranges::count_if(sensed_, [&](const Sensed& sensed) {
+                        return sensed.is_hit &&
+                               (sensed.track.state_O.mean.head<2>() - p_O).norm() <= config.alone_m;
+                      });
+}
+
 void PriorityPerception::LookAtClaims(const LocalFrame& frame, const VisibilityMap& map,
                                       Outputs& outputs) {
   const TrustConfig& config = settings_->priority.trust;
@@ -66,10 +88,15 @@ void PriorityPerception::LookAtClaims(const LocalFrame& frame, const VisibilityM
         continue;
       }
     }
-    if (!link.has_last || !link.place.IsDue(frame.stamp, config.place)) continue;
-    const double age_s = ToSeconds(frame.stamp - link.last.stamp);
-    if (std::abs(age_s) > kMaxClaimAge_s) continue;
-    if (IsOnAnotherLevel(link)) continue;
+    if (!IsRecent(link, frame.stamp) || IsOnAnotherLevel(link)) continue;
+    if (!link.trust.is_relied_on()) {
+      link.shared.OnLook(frame.stamp, IsPlaceShared(link, frame.stamp));
+      if (const auto finding = link.shared.Judge(config.shared_place)) {
+        link.trust.OnFinding(frame.stamp, *finding, false);
+        Report(link, frame.stamp, outputs);
+      }
+    }
+    if (!link.place.IsDue(frame.stamp, config.place)) continue;
     if (IsVouchedFor(link)) {
       link.place.OnVouched();
       continue;

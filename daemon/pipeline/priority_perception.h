@@ -21,6 +21,7 @@
 #include "daemon/trust/claimed_place.h"
 #include "daemon/trust/common_mode.h"
 #include "daemon/trust/sender_trust.h"
+#include "daemon/trust/shared_place.h"
 #include "daemon/trust/tombstones.h"
 #include "daemon/visibility/visibility.h"
 
@@ -91,6 +92,7 @@ class PriorityPerception {
     std::optional<double> length_m;  // As claimed.
     std::optional<double> width_m;
     ClaimedPlace place;
+    SharedPlace shared;
     std::uint64_t withdrawn_id = 0;  // LOCAL track it was relied on with when it was withdrawn.
     std::uint64_t compared_id = 0;   // LOCAL track of the last residual; 0 = none.
     int breaks = 0;                  // Above 0: its messages lately did not continue each other.
@@ -108,6 +110,7 @@ class PriorityPerception {
     std::optional<Timestamp> last_part;  // Last look that had but a part of it.
     bool is_partial = false;             // That was so lately that the part may mislead.
   };
+  static bool IsRecent(const Link& link, Timestamp now);
   struct Settings {
     PriorityConfig priority;
     VehicleConfig vehicle;
@@ -145,6 +148,7 @@ class PriorityPerception {
   [[nodiscard]] std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> LookAround(
       const Link& link, const LocalFrame& frame, const VisibilityMap& map) const;
   [[nodiscard]] bool IsVouchedFor(const Link& link) const;
+  [[nodiscard]] bool IsPlaceShared(const Link& link, Timestamp now) const;
   [[nodiscard]] bool IsOnAnotherLevel(const Link& link) const;
   void JudgeCommonMode(Timestamp now);
 
@@ -158,6 +162,7 @@ class PriorityPerception {
   PriorityVehicle* Inherit(Link& link, const ClaimInOdometry& here, Outputs& outputs);
   void CompareWithSensors(Link& link, PriorityVehicle* vehicle, const ClaimInOdometry& here);
   void UseClaim(Link& link, PriorityVehicle& vehicle, const ClaimInOdometry& here);
+  [[nodiscard]] bool IsAnothersBridge(const LocalTrack& track, SenderId but) const;
   void TryValidate(Link& link, const ClaimInOdometry& here);
 
   void EndVehicle(PriorityVehicle& vehicle, Timestamp stamp);

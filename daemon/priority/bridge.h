@@ -25,7 +25,8 @@ struct BridgeConfig {
   double reach_along_mps2 = 2.5;   ///< ... + half of this t^2,
   double reach_across_m = 1.5;     ///< across ...
   double reach_across_mps2 = 3.0;  ///< ... + half of this t^2: an honest turn stays inside.
-  double reach_most_m = 7.0;       ///< Never farther than this: what a liar can do, however long.
+  double reach_most_m = 6.5;       ///< Never farther than this: what a liar can do, however long.
+  double max_distance_m = 100.0;   ///< From the ego; farther off the coast itself says too little.
   double part_share = 0.6;         ///< Less of a vehicle visible: measured by a part of it.
   int max_misfits = 3;             ///< Claims in a row that do not fit the bridge end it.
   double look_s = 0.3;             ///< C11: at most one look at a place per this time.
@@ -50,6 +51,7 @@ struct BridgeConfig {
     a.Field("reach_across_m", reach_across_m, {.at_least = 0.0, .at_most = 20.0});
     a.Field("reach_across_mps2", reach_across_mps2, {.at_least = 0.0, .at_most = 20.0});
     a.Field("reach_most_m", reach_most_m, {.above = 0.0, .at_most = 100.0});
+    a.Field("max_distance_m", max_distance_m, {.above = 1.0, .at_most = 500.0});
     a.Field("part_share", part_share, {.at_least = 0.0, .at_most = 1.0});
     a.Field("max_misfits", max_misfits, {.at_least = 1, .at_most = 100});
     a.Field("look_s", look_s, {.above = 0.01, .at_most = 5.0});

@@ -49,6 +49,7 @@ constexpr std::array kRows{
     Row{"residual_jump", kPosition},
     Row{"residual_level", kPosition},
     Row{"seen_elsewhere", kPosition},
+    Row{"shared_place", kNone},
     Row{"size_change", kStatic},  // Listed.
     Row{"speed_against_path", kSpeed},
     Row{"two_places", kNone},

@@ -5,6 +5,7 @@
 #include "daemon/base/visit.h"
 #include "daemon/trust/claimed_place.h"
 #include "daemon/trust/common_mode.h"
+#include "daemon/trust/shared_place.h"
 #include "daemon/trust/tombstone_config.h"
 
 namespace v2vouch {
@@ -42,6 +43,7 @@ struct TrustConfig {
   double revoked_s = 60.0;  ///< Doubles each time.
   double max_revoked_s = 600.0;
   ClaimedPlaceConfig place;
+  SharedPlaceConfig shared_place;
   CommonModeConfig common_mode;
   TombstoneConfig tombstone;
 
@@ -77,6 +79,7 @@ struct TrustConfig {
     a.Field("revoked_s", revoked_s, {.at_least = 0.0, .at_most = 3600.0});
     a.Field("max_revoked_s", max_revoked_s, {.at_least = 0.0, .at_most = 36000.0});
     a.Field("place", place);
+    a.Field("shared_place", shared_place);
     a.Field("common_mode", common_mode);
     a.Field("tombstone", tombstone);
   }

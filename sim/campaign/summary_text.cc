@@ -76,6 +76,7 @@ Json AttackJson(const Group& group) {
                {"exposure_max_m", a.exposure_max_m},
                {"exposure_p95_m", a.exposure_p95_m},
                {"exposure_over_3m_s_per_run", a.harm_s},
+               {"lingered_in_clear_view_s", a.lingered_max_s},
                {"original_max_m", a.original_max_m},
                {"ghost_publications", a.ghosts},
                {"ghosts_of_attackers", a.ghosts_of_attackers},

@@ -151,8 +151,10 @@ void JudgeAttacks(Judge& judge) {
   judge.Attacks("exposure [m], A7 drift 0.5 m/s", kHalfMetreDrift, false, 4.0, 2, Exposed);
   judge.Attacks("exposure [m], A13 walk-off in view", {"A13", "A13/*"}, false, 4.0, 2, Exposed);
   judge.Attacks("exposure [m], A14 walk-off hidden", {"A14", "A14/*"}, false, 8.0, 2, Exposed);
-  judge.Attacks("met p95 [s] after clear view returns, A14", {"A14", "A14/*"}, false, 1.0, 2,
-                MetP95);
+  judge.Attacks("published beside every car in clear view [s], A14", {"A14", "A14/*"}, false, 1.0,
+                2, [](const Group& g) {
+                  return Reading{g.attack.lingered_max_s, false};
+                });
   judge.Attacks("attackers accused, A28 stealth bias", {"A28", "A28/*"}, false, 0, 0,
                 [](const Group& g) {
                   return Reading{1.0 * g.attack.accused, false};

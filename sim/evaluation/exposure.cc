@@ -42,7 +42,7 @@ double Finite(double distance_m) { return std::min(distance_m, 1000.0); }
 
 class Meter {
  public:
-  Meter(const RunLog& log, const Senders& senders) : log_(log), senders_(senders) {
+  Meter(const RunLog& log, const Senders& senders) : log_(log), senders_(senders), view_(log) {
     for (const BsmTruth& m : log.bsm_truths) {
       if (m.is_attack && (!begin_ || m.stamp < *begin_)) begin_ = m.stamp;
     }
@@ -54,6 +54,7 @@ class Meter {
     ++result_.instants;
     if (placed.empty()) {
       ghosts_.clear();
+      lingering_.clear();
       return;
     }
     const std::vector<TrueBox> boxes = TrueBoxes(log_.truth, t);
@@ -61,6 +62,7 @@ class Meter {
     if (placed.size() > boxes.size()) ++result_.outnumbered;
     std::map<std::size_t, int> claimed;
     std::map<std::int64_t, double> ghosts_now;
+    std::map<std::int64_t, double> lingering_now;
     const double since_s = ToSeconds(t - log_.truth.begin());
     for (const PlacedTrack& track : placed) {
       const Eigen::Vector2d p_W = track.motion_W.position();
@@ -74,8 +76,15 @@ class Meter {
                         since_s,         exposure_m};
         TakeGhost(now, period_s, ghosts_now);
       }
-      if (attack != nullptr) TakeAttacker(*attack, t, p_W, boxes, exposure_m, period_s);
+      if (attack == nullptr) continue;
+      TakeAttacker(*attack, t, p_W, boxes, exposure_m, period_s);
+      if (exposure_m > Exposure::kLinger_m && view_.Sees(t, p_W, 0)) {
+        const double so_far_s = lingering_[track.track->id] + period_s;
+        lingering_now[track.track->id] = so_far_s;
+        result_.lingered_s = std::max(result_.lingered_s, so_far_s);
+      }
     }
+    lingering_ = std::move(lingering_now);
     ghosts_ = std::move(ghosts_now);
     result_.doubled += std::any_of(claimed.begin(), claimed.end(),
                                    [](const auto& vehicle) { return vehicle.second > 1; })
@@ -123,7 +132,9 @@ class Meter {
   const RunLog& log_;
   const Senders& senders_;
   std::optional<Timestamp> begin_;
-  std::map<std::int64_t, double> ghosts_;  // Seconds above the limit on end, by track.
+  JointView view_;
+  std::map<std::int64_t, double> lingering_;  // Seconds in clear view on end, by track.
+  std::map<std::int64_t, double> ghosts_;     // Seconds above the limit on end, by track.
   Exposure result_;
 };
 

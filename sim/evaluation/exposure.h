@@ -28,6 +28,7 @@ struct Ghost {
 /// tracks further away than `kReach_m` are left out: what is real beside them is not known.
 struct Exposure {
   static constexpr double kHarm_m = 3.0;
+  static constexpr double kLinger_m = 2.0;
   static constexpr double kGhost_m = 5.0;
   static constexpr double kGhost_s = 0.2;
   static constexpr double kBin_s = 0.5;
@@ -38,6 +39,9 @@ struct Exposure {
   /// The same distance to the vehicle the device first spoke for (its own, or the one it shadows).
   double original_max_m = 0.0;
   double original_harm_s = 0.0;
+  /// Longest time on end that such a track was more than `kLinger_m` from every real vehicle's box
+  /// while its place was in joint view: what the sensors could have seen to be empty.
+  double lingered_s = 0.0;
   double priority_s = 0.0;  ///< Track-seconds of attackers in PRIORITY after their attack began.
   /// Largest exposure per bin of time since the first attack message of the run.
   std::vector<double> curve_m;

@@ -73,6 +73,7 @@ Json FromExposure(const Exposure& e) {
   }
   return {{"max_m", Rounded(e.max_m)},
           {"harm_s", Rounded(e.harm_s)},
+          {"lingered_s", Rounded(e.lingered_s)},
           {"original_max_m", Rounded(e.original_max_m)},
           {"original_harm_s", Rounded(e.original_harm_s)},
           {"priority_s", Rounded(e.priority_s)},
@@ -88,6 +89,7 @@ Exposure ToExposure(const Json& json) {
   Exposure e;
   e.max_m = json.value("max_m", 0.0);
   e.harm_s = json.value("harm_s", 0.0);
+  e.lingered_s = json.value("lingered_s", 0.0);
   e.original_max_m = json.value("original_max_m", 0.0);
   e.original_harm_s = json.value("original_harm_s", 0.0);
   e.priority_s = json.value("priority_s", 0.0);

@@ -36,6 +36,7 @@ void AddRun(const SpoofRun& run, AttackFigures& figures) {
   figures.exposure_max_m = std::max(figures.exposure_max_m, e.max_m);
   figures.original_max_m = std::max(figures.original_max_m, e.original_max_m);
   figures.harm_s += e.harm_s;
+  figures.lingered_max_s = std::max(figures.lingered_max_s, e.lingered_s);
   figures.ghosts += static_cast<int>(e.ghosts.size());
   figures.ghosts_of_attackers += e.ghosts_of_attackers();
   figures.outnumbered += e.outnumbered;

@@ -44,6 +44,7 @@ struct AttackFigures {
   double exposure_max_m = 0.0;
   double exposure_p95_m = 0.0;  ///< Over the runs' largest.
   double harm_s = 0.0;          ///< Per run.
+  double lingered_max_s = 0.0;  ///< Exposure::lingered_s of the worst run.
   double original_max_m = 0.0;
   int ghosts = 0;
   int ghosts_of_attackers = 0;

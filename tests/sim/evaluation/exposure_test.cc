@@ -94,6 +94,18 @@ TEST_F(ExposureOf, AGhostOfAnAttackerIsCountedOncePerTrack) {
   EXPECT_NEAR(e.ghosts[0].to_s, 5.0, 1e-9);
 }
 
+TEST_F(ExposureOf, LingeringIsWhereTheSensorsCouldHaveLooked) {
+  const auto beside = [](double x_m) {
+    return [x_m](double t) -> std::optional<Eigen::Vector2d> {
+      if (t < 2.499 || t > 4.001) return std::nullopt;
+      return Eigen::Vector2d(x_m, -5.0);  // Clear of car 1 by 4 m.
+    };
+  };
+  EXPECT_NEAR(With(kLiar, beside(30.0)).lingered_s, 1.55, 1e-9);
+  scene_.log_.lists[Index(ListKind::kPriority)].clear();
+  EXPECT_EQ(With(kLiar, beside(-30.0)).lingered_s, 0.0);  // Behind the ego nobody looks.
+}
+
 TEST_F(ExposureOf, OneCarListedTwiceIsDoubledAndThreeForTwoOutnumber) {
   for (int k = 0; k <= 100; ++k) {
     scene_.AddTrack(7, kLiar, {30.0, 0.5});
