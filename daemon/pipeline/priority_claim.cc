@@ -20,7 +20,6 @@ constexpr double kOwnMotionFloor_m = 2.0;
 constexpr double kSeen_s = 0.15;  // Co-observed means: a hit of the same moment, not of support's.
 constexpr int kBreakMemory = 30;  // Messages for which a break of the own motion is held against.
 constexpr int kMostVelocityDoubts = 2;
-constexpr double kOnePlace_m = 2.0;  // Centres of two vehicles are not so near each other.
 constexpr double kHeirSpeed_mps = 2.0;
 constexpr double kHeirYaw_rad = FromDegrees(20.0);
 
@@ -269,7 +268,7 @@ bool PriorityPerception::IsAnothersBridge(const LocalTrack& track, SenderId but)
 void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
   const PriorityConfig& config = settings_->priority;
   const PairTable::Pair* pair = pairs_.AssignedTo(link.sender);
-  if (pair == nullptr || IsHeld(pair->track_id)) return;
+  if (pair == nullptr || IsHeld(pair->track_id) || link.shared.is_contested()) return;
   const Sensed* sensed = FindSensed(pair->track_id);
   if (sensed == nullptr || IsAnothersBridge(sensed->track, link.sender)) return;
   const Timestamp last_hit = sensed->track.LastHit();

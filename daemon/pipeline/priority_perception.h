@@ -110,6 +110,7 @@ class PriorityPerception {
     std::optional<Timestamp> last_part;  // Last look that had but a part of it.
     bool is_partial = false;             // That was so lately that the part may mislead.
   };
+  static constexpr double kOnePlace_m = 2.0;  // Centres of two vehicles are never so close.
   static bool IsRecent(const Link& link, Timestamp now);
   struct Settings {
     PriorityConfig priority;
@@ -136,6 +137,7 @@ class PriorityPerception {
   void Remember(const LocalFrame& frame, const VisibilityMap& map);
   void StepVehicle(PriorityVehicle& vehicle, const LocalFrame& frame, const VisibilityMap& map,
                    Outputs& outputs);
+  [[nodiscard]] bool IsOnSupported(const PriorityVehicle& bridged) const;
   void TakeSensorUpdates(PriorityVehicle& vehicle, const Sensed& sensed, const LocalFrame& frame);
   void LookForReturn(PriorityVehicle& vehicle, Timestamp stamp);
   [[nodiscard]] bool IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle,

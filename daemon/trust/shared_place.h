@@ -33,9 +33,12 @@ struct SharedPlaceConfig {
 class SharedPlace {
  public:
   void OnLook(Timestamp stamp, bool is_shared);
+  /// Long enough that nobody new is to be believed there.
+  [[nodiscard]] bool is_contested() const { return shared_s_ >= kContested_s; }
   [[nodiscard]] std::optional<Finding> Judge(const SharedPlaceConfig& config) const;
 
  private:
+  static constexpr double kContested_s = 0.5;
   std::optional<Timestamp> last_look_;
   double shared_s_ = 0.0;
 };

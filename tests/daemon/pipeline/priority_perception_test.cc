@@ -463,6 +463,62 @@ TEST(PriorityPerception, AHiddenVehiclesLocalTrackThatGoesOverToItsNeighbourDrag
   }
 }
 
+TEST(PriorityPerception, ABridgeEndsWhereTheSensorsSeeAnotherVehicleOfTheList) {
+  Scene scene = Validated(11);
+  Car slow = OncomingCar();
+  slow.local_id = 9;
+  slow.p = scene.cars[0].p - Eigen::Vector2d(14.0, 0.0);
+  slow.speed_mps = 2.0;
+  scene.cars.push_back(slow);
+  const auto both = [&] {
+    scene.Honest(1);
+    if (scene.frames % 2 == 1) scene.Say(2, scene.cars[1].p, kPi, 2.0);
+  };
+  scene.Run(3.0, both);
+  ASSERT_EQ(scene.Priority().size(), 2u);
+  Hide(scene);  // The first: what follows would drive through the second.
+  scene.Run(3.0, [&] {
+    both();
+    const auto lines = scene.Priority();
+    if (lines.size() < 2) return;
+    const Eigen::Vector2d apart =
+        (lines[0].track.state_O.mean - lines[1].track.state_O.mean).head<2>();
+    EXPECT_GT(apart.norm(), 1.5);
+  });
+  ASSERT_EQ(scene.Priority().size(), 1u);
+  EXPECT_EQ(scene.Priority()[0].sender, 2u);
+  EXPECT_TRUE(scene.outputs.reports.empty());
+}
+
+TEST(PriorityPerception, ABridgeEndsFarFromTheEgo) {
+  PriorityConfig config;
+  config.bridge.max_distance_m = 35.0;
+  Scene scene(12, config);
+  scene.cars = {OncomingCar()};
+  scene.Run(6.0, [&] { scene.Honest(1); });  // Seen at 40 m: nothing ends.
+  ASSERT_EQ(scene.Priority().size(), 1u);
+  Hide(scene);
+  scene.Run(0.6, [&] { scene.Honest(1); });
+  EXPECT_TRUE(scene.Priority().empty());
+  EXPECT_TRUE(scene.outputs.reports.empty());
+}
+
+// Whose of them the car is, nobody knows.
+TEST(PriorityPerception, SeveralIdsThatClaimOneCarFromTheFirstAreAllWithdrawnNotAccused) {
+  Scene scene;
+  scene.cars = {OncomingCar()};
+  scene.Run(5.0, [&] {
+    for (const SenderId sender : {1u, 2u, 3u}) {
+      if (scene.frames % 2 == 0) scene.Say(sender, scene.cars[0].p, kPi, 5.0, 0.3);
+    }
+    EXPECT_LE(scene.Priority().size(), 1u);
+  });
+  EXPECT_TRUE(scene.Priority().empty());
+  for (const SenderId sender : {1u, 2u, 3u}) {
+    EXPECT_EQ(scene.perception.TrustOf(sender), TrustState::kSuspect) << sender;
+  }
+}
+
 // The message stream then jumps with every message of either; who of them lies is seen by the
 // sensors alone.
 TEST(PriorityPerception, ImpersonatedVehicleGoesOnWhileItIsSeen) {
