@@ -114,8 +114,10 @@ void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
     Tell(bsm, claim.reason(), outputs);
     return outputs.Refuse(claim.reason(), bsm.stamp);
   }
-  // Far senders can meet no track: they are listed, and cost nothing more.
-  if (place.is_known && HorizontalDistance(place.p_E, claim->p_E) > config.timeline.interest_m) {
+  // Far strangers can meet no track: they are listed, and cost nothing more. Whoever was near and
+  // suddenly is far must answer for it.
+  if (place.is_known && HorizontalDistance(place.p_E, claim->p_E) > config.timeline.interest_m &&
+      !timeline.priority().IsFollowed(bsm.sender)) {
     return Tell(bsm, std::nullopt, outputs);
   }
   Claim followed = *claim;

@@ -68,6 +68,7 @@ class PriorityPerception {
 
   [[nodiscard]] const Alignment& alignment() const { return alignment_; }
   [[nodiscard]] TrustState TrustOf(SenderId sender) const;
+  [[nodiscard]] bool IsFollowed(SenderId sender) const { return FindLink(sender) != nullptr; }
   /// The ego's place is in doubt: its GNSS has jumped, or all senders are off alike.
   [[nodiscard]] bool is_ego_gnss_suspect() const {
     return alignment_.is_suspect() || IsShifted(sensed_stamp_);

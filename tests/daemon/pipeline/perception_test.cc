@@ -62,6 +62,7 @@ struct Drive {
   TrackList last_local, last_priority;
   ReasonCounts refused{};
   std::size_t most_priority_tracks = 0;
+  std::vector<MisbehaviorReport> reports;
 };
 
 Drive Feed(const std::vector<Input>& inputs, const PerceptionConfig& config = {}) {
@@ -73,6 +74,7 @@ Drive Feed(const std::vector<Input>& inputs, const PerceptionConfig& config = {}
     for (const Diagnostic& diagnostic : outputs.diagnostics) {
       ++run.refused[static_cast<std::size_t>(diagnostic.reason)];
     }
+    run.reports.insert(run.reports.end(), outputs.reports.begin(), outputs.reports.end());
     if (!outputs.has_lists) continue;
     run.local += Bits(outputs.local, true);
     run.priority += Bits(outputs.priority, true);
@@ -144,6 +146,24 @@ TEST(Perception, AGhostThatOnlyTalksIsNeverListed) {
 }
 
 // Any arrival order inside the replay buffer ends in the same state, bit for bit.
+// Far strangers are none of its business; this one is not.
+TEST(Perception, AValidatedSenderThatIsSuddenlyFarAwayIsWithdrawn) {
+  SyntheticDrive drive = Traffic();
+  auto inputs = MakeInputs(drive);
+  for (Input& input : inputs) {
+    auto* bsm = std::get_if<Bsm>(&input);
+    if (bsm == nullptr || bsm->sender != 11 || bsm->stamp < DriveStart() + FromSeconds(5.0))
+      continue;
+    bsm->latitude_rad = *bsm->latitude_rad + 600.0 / 6.37e6;
+  }
+  const Drive run = Feed(inputs);
+  EXPECT_TRUE(std::ranges::any_of(run.reports, [](const MisbehaviorReport& report) {
+    return report.sender == 11u && report.stamp < DriveStart() + FromSeconds(6.0);
+  }));
+  EXPECT_TRUE(std::ranges::none_of(run.last_priority.tracks,
+                                   [](const auto& line) { return line.sender == 11u; }));
+}
+
 TEST(PerceptionProperty, ArrivalOrderWithinTheBufferDoesNotMatter) {
   SyntheticDrive drive = Traffic();
   drive.duration_s = 4.0;
