@@ -20,10 +20,12 @@ constexpr double kLongestStep_s = 0.5;
 bool IsFalse(const BsmTruth& m, const Senders& senders) {
   if (!m.is_attack) return false;
   if (m.vehicle == 0 || !m.honest.p_W.allFinite() || !m.claimed.p_W.allFinite()) return true;
-  if (m.age_s > Falseness::kAge_s) return true;
   if (senders.HonestUser(m.sender)) return true;
-  if ((m.claimed.p_W - m.honest.p_W).norm() > Falseness::kPosition_m) return true;
-  if (std::abs(m.claimed.speed_mps - m.honest.speed_mps) > Falseness::kSpeed_mps) return true;
+  const double off_m = (m.claimed.p_W - m.honest.p_W).norm();
+  const double off_mps = std::abs(m.claimed.speed_mps - m.honest.speed_mps);
+  if (off_m > Falseness::kPosition_m || off_mps > Falseness::kSpeed_mps) return true;
+  if (m.age_s > Falseness::kAge_s && (off_m > Falseness::kSame_m || off_mps > Falseness::kSame_mps))
+    return true;
   return std::abs(m.honest.speed_mps) > Falseness::kHeadingFrom_mps &&
          std::abs(AngleDifference(m.claimed.yaw_rad, m.honest.yaw_rad)) > Falseness::kHeading_rad;
 }

@@ -17,7 +17,9 @@ struct Falseness {
   static constexpr double kSpeed_mps = 1.0;
   static constexpr double kHeading_rad = 0.2617993877991494;  ///< 15 degrees ...
   static constexpr double kHeadingFrom_mps = 3.0;             ///< ... while honestly faster.
-  static constexpr double kAge_s = 1.0;
+  static constexpr double kAge_s = 1.0;     ///< Older, and what it says is no longer so:
+  static constexpr double kSame_m = 0.5;    ///< within these an old message of a standing car
+  static constexpr double kSame_mps = 0.5;  ///< is what an honest unit would say now.
 };
 
 /// One message of TRUTH_BSM, judged.

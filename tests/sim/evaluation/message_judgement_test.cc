@@ -47,7 +47,11 @@ TEST_F(Judgement, EachKindOfLieIsFalseFromItsLimitOn) {
   EXPECT_FALSE(Last().is_false);
   Lie(1.6).claimed.yaw_rad -= FromDegrees(16);
   EXPECT_TRUE(Last().is_false);
-  Lie(1.7).age_s = 1.01;
+  Lie(1.65).age_s = 1.01;
+  EXPECT_FALSE(Last().is_false);  // Of a standing car: still so.
+  BsmTruth& old = Lie(1.7);
+  old.age_s = 1.01;
+  old.claimed.p_W.x() -= 0.6;
   EXPECT_TRUE(Last().is_false);
   Lie(1.8).vehicle = 0;
   EXPECT_TRUE(Last().is_false);
