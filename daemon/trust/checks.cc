@@ -124,8 +124,10 @@ Eigen::Vector3d ResidualHistory::Reference() const {
 std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config) {
   if (!history.is_settled()) return std::nullopt;
-  const Eigen::Vector2d own_O =
-      now.is_ego_shifted ? (history.mean_O() - now.shift_O).eval() : history.mean_O();
+  // What all are off by may be our own fault. Who is not off at all is not to blame for the others:
+  // the shift may be a lie that several tell together.
+  Eigen::Vector2d own_O = history.mean_O();
+  if (now.is_ego_shifted && (own_O - now.shift_O).norm() < own_O.norm()) own_O -= now.shift_O;
   return JudgeResidual(
       "residual_level", own_O, now, config.level_withdraw_m, config.level_accuse_m,
       {now.alignment_sigma_m + 2.0 * history.sensed_sigma_m(),

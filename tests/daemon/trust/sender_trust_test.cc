@@ -295,13 +295,24 @@ TEST(SenderTrust, AShiftThatAllShareIsNotTheSendersFault) {
   SenderTrust honest = Validated();
   EXPECT_TRUE(std::isnan(RunUntilVerdict(honest, 0.0, 10.0, shifted, Verdict::kWithdraw)));
   const auto liar = [](double) {
-    CoObservation observation = Residual(0.0, -4.0);
+    CoObservation observation = Residual(0.0, -8.0);
     observation.is_ego_shifted = true;
     observation.shift_O = {5.0, 0.5};
     return observation;
   };
   SenderTrust caught = Validated();
   EXPECT_LT(RunUntilVerdict(caught, 0.0, 10.0, liar, Verdict::kWithdraw), 3.0);
+}
+
+TEST(SenderTrust, WhoIsNotOffIsNotBlamedForAShiftThatOthersTellTogether) {
+  const auto outvoted = [](double) {
+    CoObservation observation = Residual(-1.2, -1.4);
+    observation.is_ego_shifted = true;
+    observation.shift_O = {-10.0, 3.0};
+    return observation;
+  };
+  SenderTrust honest = Validated();
+  EXPECT_TRUE(std::isnan(RunUntilVerdict(honest, 0.0, 10.0, outvoted, Verdict::kWithdraw)));
 }
 
 TEST(SenderTrust, FeignedBrakingIsWithdrawnAfterThreeSeconds) {
