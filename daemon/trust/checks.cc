@@ -60,6 +60,10 @@ void ResidualHistory::LookForTear(const CoObservation& observation, const TrustC
     is_torn_ = has_any_ && (observation.residual_O - mean_).norm() > limit_m;
     unexplained_.setZero();
   }
+  // While but a part is seen the mean rests. A part may mislead by the size of a vehicle, no more.
+  if (observation.is_partial && has_any_) {
+    is_torn_ |= (observation.residual_O - mean_).norm() > limit_m + config.torn_m;
+  }
   last_step_ = observation.stamp;
   last_residual_ = observation.residual_O;
 }

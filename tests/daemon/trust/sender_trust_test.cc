@@ -235,6 +235,25 @@ TEST(SenderTrust, AFalseSensedVelocityBlamesNobody) {
       Verdict::kWithdraw)));
 }
 
+// A LOCAL track of which but a part is seen drives off with another car, at a speed that it tells.
+TEST(SenderTrust, APartExplainsNoMoreThanTheSizeOfAVehicle) {
+  SenderTrust trust = Validated();
+  double left_s = -1.0;
+  for (int i = 0; i < 200 && left_s < 0.0; ++i) {
+    const double t = 0.1 * i;
+    CoObservation observation = Residual(t < 3.0 ? 0.5 : 0.5 + 2.0 * (t - 3.0), 0.0);
+    observation.stamp = At(t);
+    observation.is_own_motion_whole = true;
+    observation.is_partial = t >= 3.0;
+    if (t >= 3.0) observation.velocity_residual_O = Eigen::Vector2d(2.0, 0.0);
+    if (!trust.OnCoObservation(observation, true, kConfig)) left_s = t;
+  }
+  EXPECT_GT(left_s, 4.5);
+  EXPECT_LT(left_s, 7.0);
+  EXPECT_EQ(trust.state(), TrustState::kCandidate);  // Blames nobody.
+  EXPECT_FALSE(trust.TakeVerdict());
+}
+
 // The residual jumps by 6 m. Whoever's own continuity broke is at fault.
 TEST(SenderTrust, ATornPairBlamesTheSenderOnlyWhereItsOwnMotionBroke) {
   const auto torn = [](bool is_own_motion_whole) {
