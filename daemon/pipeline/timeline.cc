@@ -226,15 +226,24 @@ int Timeline::RunPriority(std::size_t from, Outputs& outputs) {
   return steps;
 }
 
-void Timeline::EmitOnce(Event& event, const Outputs& step, Outputs& outputs) const {
+void Timeline::EmitOnce(Event& event, const Outputs& step, Outputs& outputs) {
   for (const Diagnostic& diagnostic : step.diagnostics) {
     const auto hash = Hash(ReasonName(diagnostic.reason), 0);
     if (InsertOnce(event.emitted, hash)) outputs.diagnostics.push_back(diagnostic);
   }
+  // A late frame may move the same verdict to another moment, or let another check come first.
+  const double buffer_s = config_.timeline.replay_buffer_s;
   for (const MisbehaviorReport& report : step.reports) {
-    const auto verdict = static_cast<std::uint64_t>(report.verdict);
-    const auto hash = Hash(report.check, (std::uint64_t{report.sender} << 8) | verdict);
-    if (InsertOnce(event.emitted, hash)) outputs.reports.push_back(report);
+    std::erase_if(reported_, [&](const Reported& old) {
+      return ToSeconds(newest_ - old.stamp) > 2.0 * buffer_s;
+    });
+    const bool is_known = std::ranges::any_of(reported_, [&](const Reported& old) {
+      return old.sender == report.sender && old.verdict == report.verdict &&
+             std::abs(ToSeconds(report.stamp - old.stamp)) <= buffer_s;
+    });
+    if (is_known) continue;
+    reported_.push_back({report.stamp, report.sender, report.verdict});
+    outputs.reports.push_back(report);
   }
 }
 

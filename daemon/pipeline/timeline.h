@@ -83,8 +83,15 @@ class Timeline {
     LocalFrame frame;
     RadarPreparation radar;
     std::unique_ptr<Checkpoint> after;   // The state after this event.
-    std::vector<std::uint64_t> emitted;  // What has left already, by hash.
+    std::vector<std::uint64_t> emitted;  // Diagnostics that have left already, by hash.
     std::vector<BiasResidual> residuals;
+  };
+
+  // A verdict that has left.
+  struct Reported {
+    Timestamp stamp{};
+    SenderId sender = 0;
+    Verdict verdict = Verdict::kWithdraw;
   };
 
   std::unique_ptr<Event> NewEvent(TimelineInput input);
@@ -94,7 +101,7 @@ class Timeline {
   /// Both from event `from` to the newest. @return the number of frames / V2V events stepped.
   int RunLocal(std::size_t from, Outputs& outputs);
   int RunPriority(std::size_t from, Outputs& outputs);
-  void EmitOnce(Event& event, const Outputs& step, Outputs& outputs) const;
+  void EmitOnce(Event& event, const Outputs& step, Outputs& outputs);
   void Trim();
 
   PerceptionConfig config_;
@@ -106,6 +113,7 @@ class Timeline {
   std::vector<std::unique_ptr<Event>> spare_events_;
   std::vector<std::unique_ptr<Checkpoint>> spare_checkpoints_;
   std::vector<BiasResidual> settled_residuals_;
+  std::vector<Reported> reported_;  // Of the buffer's time.
   std::optional<Timestamp> newest_local_;  // Of any input LOCAL reads.
   Timestamp newest_{};                     // Of any frame or claim.
   Timestamp settled_{};

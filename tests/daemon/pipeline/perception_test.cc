@@ -131,7 +131,7 @@ TEST(Perception, NoBsmAndNoGnssChangesABitOfLocal) {
   EXPECT_TRUE(all.local == Feed(ahead).local);
 }
 
-TEST(Perception, AGhostThatOnlyTalksIsNeverListed) {
+SyntheticDrive Ghosts() {
   SyntheticDrive drive;
   for (int i = 0; i < 8; ++i) {
     drive.cars.push_back(SyntheticCar{.x_m = 20.0 + 25.0 * i,
@@ -140,28 +140,73 @@ TEST(Perception, AGhostThatOnlyTalksIsNeverListed) {
                                       .sender = static_cast<SenderId>(i + 1),
                                       .is_real = false});
   }
-  const Drive run = Feed(MakeInputs(drive));
+  return drive;
+}
+
+TEST(Perception, AGhostThatOnlyTalksIsNeverListed) {
+  const Drive run = Feed(MakeInputs(Ghosts()));
   EXPECT_TRUE(run.last_local.tracks.empty());
   EXPECT_EQ(run.most_priority_tracks, 0u);
 }
 
 // Any arrival order inside the replay buffer ends in the same state, bit for bit.
+// In order of arrival: BSMs late by 0.2 s in their order, everything else by up to 0.3 s.
+std::vector<Input> Shuffled(const std::vector<Input>& in_order, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<std::pair<Timestamp, Input>> arrivals;
+  for (const Input& input : in_order) {
+    const Timestamp stamp = HeaderOf(input).stamp;
+    const bool is_early = ToSeconds(stamp - DriveStart()) < 0.5;
+    const bool is_bsm = std::holds_alternative<Bsm>(input);
+    const double delay = is_early ? 0.0 : is_bsm ? 0.2 : random.Uniform(0.0, 0.3);
+    arrivals.emplace_back(stamp + FromSeconds(delay), input);
+  }
+  std::stable_sort(arrivals.begin(), arrivals.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Input> shuffled;
+  for (auto& arrival : arrivals) shuffled.push_back(arrival.second);
+  return shuffled;
+}
+
 // Far strangers are none of its business; this one is not.
-TEST(Perception, AValidatedSenderThatIsSuddenlyFarAwayIsWithdrawn) {
+TEST(Perception, AValidatedSenderThatIsSuddenlyFarAwayIsWithdrawnOnce) {
   SyntheticDrive drive = Traffic();
   auto inputs = MakeInputs(drive);
   for (Input& input : inputs) {
     auto* bsm = std::get_if<Bsm>(&input);
-    if (bsm == nullptr || bsm->sender != 11 || bsm->stamp < DriveStart() + FromSeconds(5.0))
-      continue;
+    if (bsm == nullptr || bsm->sender != 11) continue;
+    if (bsm->stamp < DriveStart() + FromSeconds(5.0)) continue;
     bsm->latitude_rad = *bsm->latitude_rad + 600.0 / 6.37e6;
   }
-  const Drive run = Feed(inputs);
-  EXPECT_TRUE(std::ranges::any_of(run.reports, [](const MisbehaviorReport& report) {
-    return report.sender == 11u && report.stamp < DriveStart() + FromSeconds(6.0);
-  }));
-  EXPECT_TRUE(std::ranges::none_of(run.last_priority.tracks,
-                                   [](const auto& line) { return line.sender == 11u; }));
+  for (std::uint64_t seed = 0; seed <= 8; ++seed) {
+    const Drive run = Feed(seed == 0 ? inputs : Shuffled(inputs, seed));
+    const auto withdrawals = std::ranges::count_if(run.reports, [](const MisbehaviorReport& one) {
+      return one.sender == 11u && one.verdict == Verdict::kWithdraw &&
+             one.stamp < DriveStart() + FromSeconds(6.0);
+    });
+    EXPECT_EQ(withdrawals, 1) << seed;  // Late frames or none.
+    EXPECT_TRUE(std::ranges::none_of(run.last_priority.tracks,
+                                     [](const auto& line) { return line.sender == 11u; }));
+  }
+}
+
+// A late frame moves a verdict to another moment; it was told already.
+TEST(Perception, AVerdictIsToldOnceThoughLateFramesMoveIt) {
+  const SyntheticDrive drive = Ghosts();
+  int told = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Drive run = Feed(Shuffled(MakeInputs(drive), seed));
+    for (std::size_t i = 0; i < run.reports.size(); ++i) {
+      ++told;
+      for (std::size_t j = 0; j < i; ++j) {
+        const MisbehaviorReport& one = run.reports[i];
+        const MisbehaviorReport& other = run.reports[j];
+        if (one.sender != other.sender || one.verdict != other.verdict) continue;
+        EXPECT_GT(std::abs(ToSeconds(one.stamp - other.stamp)), 0.5) << seed << " " << one.sender;
+      }
+    }
+  }
+  EXPECT_GT(told, 8);
 }
 
 TEST(PerceptionProperty, ArrivalOrderWithinTheBufferDoesNotMatter) {
@@ -171,20 +216,7 @@ TEST(PerceptionProperty, ArrivalOrderWithinTheBufferDoesNotMatter) {
   const Drive reference = Feed(in_order);
   ASSERT_FALSE(reference.last_local.tracks.empty());
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    Random random(seed);
-    // Each channel keeps its own order of BSMs (one radio), everything else arrives as it likes.
-    std::vector<std::pair<Timestamp, Input>> arrivals;
-    for (const Input& input : in_order) {
-      const Timestamp stamp = HeaderOf(input).stamp;
-      const bool is_early = ToSeconds(stamp - DriveStart()) < 0.5;
-      const bool is_bsm = std::holds_alternative<Bsm>(input);
-      const double delay = is_early ? 0.0 : is_bsm ? 0.2 : random.Uniform(0.0, 0.3);
-      arrivals.emplace_back(stamp + FromSeconds(delay), input);
-    }
-    std::stable_sort(arrivals.begin(), arrivals.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<Input> shuffled;
-    for (auto& arrival : arrivals) shuffled.push_back(arrival.second);
+    std::vector<Input> shuffled = Shuffled(in_order, seed);
     // One more frame after the dust has settled shows the state.
     RadarScan last;
     last.stamp = DriveStart() + FromSeconds(drive.duration_s + 0.1);
