@@ -66,7 +66,7 @@ TEST_P(ShippedScenario, EffectiveTextReadsBackAsTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScenario,
                          testing::Values("left_turn", "urban", "highway", "occlusion", "smoke",
-                                         "campaign_urban", "campaign_highway"));
+                                         "campaign_urban", "campaign_highway", "ghosts"));
 
 TEST(LoadScenario, ReportsEveryProblemWithItsPlace) {
   const auto path = std::filesystem::temp_directory_path() / "v2vouch_bad_scenario.yaml";
