@@ -60,6 +60,10 @@ bool Covers(View view) { return view == View::kClear || view == View::kUnknown; 
 
 }  // namespace
 
+double PositionSigma(const KinematicState& state) {
+  return std::sqrt(std::max(state.covariance(kX, kX), state.covariance(kY, kY)));
+}
+
 PairObservation Compare(const ClaimInOdometry& claim, const KinematicState& sensed) {
   PairObservation observation;
   observation.stamp = claim.stamp;

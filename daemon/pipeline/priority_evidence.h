@@ -17,6 +17,9 @@ namespace v2vouch {
 /// of what the trust checks allow (TrustConfig::stale_position_s).
 inline constexpr double kStalePositionSigma_s = 0.075;
 
+/// Standard deviation of the position along the worse of the two axes of O [m].
+double PositionSigma(const KinematicState& state);
+
 /// A claim beside a LOCAL track that has been predicted to the claim's time. Both may tell the same
 /// motion with opposite fronts (reversing, a standing car of unknown direction): the reading in
 /// which they agree better counts.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an own-sensor frame does to the PRIORITY vehicles: support, loss, return, contradiction.
-#include <Eigen/LU>
+// What an own-sensor frame does to the PRIORITY vehicles: support, loss, the end of a bridge.
 #include <algorithm>
 #include <cmath>
 #include <variant>
@@ -13,24 +12,6 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kReturnGate = 13.8;    // Chi-square, 2 dof, 0.999.
-constexpr double kReturnFloor_m = 0.7;  // Extent and reference point of a young track.
-constexpr double kReturnSpeed_mps = 4.0;
-// How far a vehicle that comes back may be from where its sender says, bias taken off: less across
-// than along, where lanes lie and where the sender's own age of position does not reach. Beside it
-// twice the doubt, but a track that is not known better than this is not taken for anybody.
-constexpr double kClaimedAlong_m = 2.5;
-constexpr double kClaimedAcross_m = 1.2;
-constexpr double kClaimedSpeed_mps = 2.5;
-constexpr double kMostDoubt_m = 1.5;
-constexpr double kMostDoubt_mps = 1.5;
-constexpr double kSlack_s = 0.5;     // A track born so long before the loss may still be its heir.
-constexpr double kPatience_s = 0.5;  // Hits of a return may lie so far apart.
-// A coast less certain than this contradicts nobody.
-constexpr double kUsefulCoast_m = 4.0;
-constexpr double kCoastGate = 9.21;
-constexpr double kSameSpeed_mps = 3.0;
-constexpr double kSameYaw_rad = FromDegrees(30.0);
 // The PRIORITY filter is never allowed this far from a LOCAL track that is being seen.
 constexpr double kApart_m = 0.7;
 // A vehicle of which a sensor has had but a part so lately may be misjudged by that part.
@@ -39,20 +20,12 @@ constexpr double kPartPosition_m = 0.5;
 constexpr double kPartYaw_rad = FromDegrees(8.0);
 constexpr double kPartSpeed_mps = 0.7;
 
-double GateDistance(const Eigen::Vector2d& d, const Eigen::Matrix2d& S) {
-  return d.dot(S.inverse() * d);
-}
-
 // What the measurements of a part of a vehicle may be wrong by for as long as it shows no more.
 void AddDoubt(StateMatrix& P) {
   P(kX, kX) += kPartPosition_m * kPartPosition_m;
   P(kY, kY) += kPartPosition_m * kPartPosition_m;
   P(kYaw, kYaw) += kPartYaw_rad * kPartYaw_rad;
   P(kSpeed, kSpeed) += kPartSpeed_mps * kPartSpeed_mps;
-}
-
-double PositionSigma(const KinematicState& state) {
-  return std::sqrt(std::max(state.covariance(kX, kX), state.covariance(kY, kY)));
 }
 
 // Hits from a camera alone come at its pace, so a missing hit in one frame means nothing.
@@ -233,124 +206,6 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
   if (!sensed.is_partial) vehicle.filter.WidenPosition(P);
   vehicle.lasting = vehicle.filter.LackOf(P);
   vehicle.agreed = Coast(vehicle.filter.kinematics(), frame.stamp);
-}
-
-// Its sender has gone on speaking: what comes back must be where it says, its known bias taken off,
-// and move as it says. Another car that comes into view near by is not it.
-bool PriorityPerception::IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle,
-                                        Timestamp stamp) const {
-  const Link* link = FindLink(vehicle.sender);
-  if (link == nullptr || !link->has_last) return true;
-  const ClaimInOdometry& claim = link->last;
-  const double age_s = ToSeconds(stamp - claim.stamp);
-  if (std::abs(age_s) > kPatience_s) return true;
-  const Eigen::Vector2d off_O =
-      claim.p_O + age_s * claim.velocity_O() - vehicle.filter.bias() - track.state_O.mean.head<2>();
-  const double yaw_rad = claim.has_course ? claim.yaw_rad : track.state_O.mean[kYaw];
-  const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
-  const Eigen::Vector2d left(-ahead.y(), ahead.x());
-  const Eigen::Matrix2d P = claim.noise + track.state_O.covariance.topLeftCorner<2, 2>();
-  const double along_sigma_m = std::sqrt(ahead.dot(P * ahead));
-  const double across_sigma_m = std::sqrt(left.dot(P * left));
-  if (std::max(along_sigma_m, across_sigma_m) > kMostDoubt_m) return false;
-  if (std::abs(ahead.dot(off_O)) > kClaimedAlong_m + 2.0 * along_sigma_m) return false;
-  if (std::abs(left.dot(off_O)) > kClaimedAcross_m + 2.0 * across_sigma_m) return false;
-  if (!claim.has_course) return true;
-  const double yaw_mps = std::sqrt(track.state_O.covariance(kYaw, kYaw)) * claim.speed_mps;
-  const double speed_sigma_mps = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
-  return (claim.velocity_O() - track.state_O.velocity()).norm() <=
-         kClaimedSpeed_mps + 2.0 * std::min(std::hypot(speed_sigma_mps, yaw_mps), kMostDoubt_mps);
-}
-
-// A vehicle comes back as its own LOCAL track, or as the nearest new one that nobody holds.
-void PriorityPerception::LookForReturn(PriorityVehicle& vehicle, Timestamp stamp) {
-  const BridgeConfig& config = settings_->priority.bridge;
-  const KinematicState here = vehicle.filter.kinematics();
-  const Sensed* best = nullptr;
-  double best_distance = kReturnGate;
-  for (const Sensed& sensed : sensed_) {
-    const LocalTrack& track = sensed.track;
-    if (!sensed.is_hit) continue;
-    const bool is_own = track.id == vehicle.local_id;
-    if (!is_own && (IsHeld(track.id) || ToSeconds(vehicle.last_support - track.start) > kSlack_s)) {
-      continue;
-    }
-    const Eigen::Vector2d p_O = track.state_O.mean.head<2>();
-    if (!vehicle.CanReach(p_O, stamp, config)) continue;
-    const double speed = std::abs(here.mean[kSpeed]) - std::abs(track.state_O.mean[kSpeed]);
-    const double speed_sigma = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
-    if (std::abs(speed) > kReturnSpeed_mps + 2.0 * speed_sigma) continue;
-    if (!IsWhereClaimed(track, vehicle, stamp)) continue;
-    const Eigen::Matrix2d S = here.covariance.topLeftCorner<2, 2>() +
-                              track.state_O.covariance.topLeftCorner<2, 2>() +
-                              kReturnFloor_m * kReturnFloor_m * Eigen::Matrix2d::Identity();
-    const double distance = GateDistance(p_O - here.mean.head<2>(), S);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = &sensed;
-    }
-  }
-  if (best == nullptr) return;
-  const bool continues = vehicle.regaining_id == best->track.id &&
-                         ToSeconds(stamp - vehicle.last_regain) <= kPatience_s;
-  vehicle.regained_hits = continues ? vehicle.regained_hits + 1 : 1;
-  vehicle.regaining_id = best->track.id;
-  vehicle.last_regain = stamp;
-  vehicle.empty.OnHit();
-  if (vehicle.regained_hits < config.regain_hits) return;
-  vehicle.local_id = best->track.id;
-  vehicle.is_supported = true;
-  vehicle.visibility = Visibility::kVisible;
-  vehicle.last_support = stamp;
-  vehicle.coast = Coast(best->track.state_O, stamp);
-  vehicle.agreed = Coast(vehicle.filter.kinematics(), stamp);
-  vehicle.regaining_id = 0;
-  pairs_.SetIncumbent(vehicle.sender, best->track.id);
-}
-
-// The real vehicle seen elsewhere: a new track that is where the sensors alone would have expected
-// it, moves like it, and is not where the bridge is.
-std::optional<Finding> PriorityPerception::Contradiction(PriorityVehicle& vehicle,
-                                                         Timestamp stamp) const {
-  const BridgeConfig& config = settings_->priority.bridge;
-  if (vehicle.regaining_id != 0 && ToSeconds(stamp - vehicle.last_regain) <= kPatience_s) {
-    return std::nullopt;
-  }
-  const KinematicState& coast = vehicle.coast.state();
-  if (PositionSigma(coast) > kUsefulCoast_m) return std::nullopt;
-  const KinematicState here = vehicle.filter.kinematics();
-  for (const Sensed& sensed : sensed_) {
-    const LocalTrack& track = sensed.track;
-    if (!sensed.is_hit || track.radar_hits + track.camera_hits < config.regain_hits) continue;
-    const bool is_own = track.id == vehicle.local_id;
-    if (!is_own && (IsHeld(track.id) || ToSeconds(vehicle.last_support - track.start) > kSlack_s)) {
-      continue;
-    }
-    const StateMatrix& P = track.state_O.covariance;
-    const Eigen::Vector2d p_O = track.state_O.mean.head<2>();
-    const double apart_m = (p_O - here.mean.head<2>()).norm();
-    if (apart_m < config.contradiction_m + 3.0 * vehicle.filter.position_sigma_m()) continue;
-    const Eigen::Matrix2d S = coast.covariance.topLeftCorner<2, 2>() + P.topLeftCorner<2, 2>();
-    if (GateDistance(p_O - coast.mean.head<2>(), S) > kCoastGate) continue;
-    if (std::abs(track.state_O.mean[kSpeed] - coast.mean[kSpeed]) > kSameSpeed_mps) continue;
-    if (std::abs(AngleDifference(track.state_O.mean[kYaw], coast.mean[kYaw])) > kSameYaw_rad) {
-      continue;
-    }
-    const bool is_somebody_else = std::ranges::any_of(pairs_.pairs(), [&](const auto& pair) {
-      return pair.track_id == track.id && pair.sender != vehicle.sender && pair.is_assigned;
-    });
-    if (is_somebody_else) continue;
-    // One hit may be anything, on a track that coasts above all.
-    const bool continues = vehicle.elsewhere_id == track.id &&
-                           ToSeconds(stamp - vehicle.last_elsewhere) <= kPatience_s;
-    vehicle.elsewhere_hits = continues ? vehicle.elsewhere_hits + 1 : 1;
-    vehicle.elsewhere_id = track.id;
-    vehicle.last_elsewhere = stamp;
-    if (vehicle.elsewhere_hits < config.regain_hits) return std::nullopt;
-    return Finding{"seen_elsewhere", Verdict::kWithdraw, "distance_m", apart_m,
-                   config.contradiction_m};
-  }
-  return std::nullopt;
 }
 
 void PriorityPerception::LookAtPlace(PriorityVehicle& vehicle, const LocalFrame& frame,
