@@ -6,6 +6,7 @@ find_package(CLI11 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(Ceres REQUIRED)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
 
