@@ -126,22 +126,27 @@ bool AreSensorsSure(const LocalTrack& track, const LocalFrame& frame, const Visi
 
 std::optional<double> ClearDetection(const Occluder& footprint, const LocalFrame& frame,
                                      const VisibilityMap& map, const VehicleConfig& vehicle,
-                                     double least_detection) {
+                                     ClearTo whom, double least_detection) {
   const SectorState health = HealthAt(footprint.centre_O, frame);
   if (health == SectorState::kBlind) return std::nullopt;
   std::optional<double> best;
   const auto consider = [&](const SensorView& seen, double probability) {
-    if (seen.view != View::kClear || seen.uncovered < kClearShare) return;
+    if (seen.view != View::kClear || seen.uncovered < kClearShare) return false;
     best = std::max(best.value_or(0.0), probability * seen.uncovered);
+    return true;
   };
+  bool is_clear_to_radar = vehicle.radars.empty();
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
-    consider(map.FromRadar(static_cast<int>(i), footprint),
-             vehicle.radars[i].detection_probability);
+    is_clear_to_radar |= consider(map.FromRadar(static_cast<int>(i), footprint),
+                                  vehicle.radars[i].detection_probability);
   }
+  if (whom == ClearTo::kBothKinds && !is_clear_to_radar) return std::nullopt;
+  bool is_clear_to_camera = vehicle.cameras.empty();
   for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
-    consider(map.FromCamera(static_cast<int>(i), footprint),
-             vehicle.cameras[i].detection_probability);
+    is_clear_to_camera |= consider(map.FromCamera(static_cast<int>(i), footprint),
+                                   vehicle.cameras[i].detection_probability);
   }
+  if (whom == ClearTo::kBothKinds && !is_clear_to_camera) return std::nullopt;
   if (best && health == SectorState::kDegraded) best = std::min(*best, least_detection);
   return best;
 }

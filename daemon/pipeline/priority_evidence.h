@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "daemon/association/pair_evidence.h"
@@ -33,11 +34,15 @@ CoObservation ForTrust(const ClaimInOdometry& claim, const KinematicState& sense
 bool AreSensorsSure(const LocalTrack& track, const LocalFrame& frame, const VisibilityMap& map,
                     const VehicleConfig& vehicle, const SensorSupportConfig& config);
 
+/// Whose clear view of a place counts: any sensor's, or a radar's and a camera's (of the kinds that
+/// are mounted). The map knows no wall that returns nothing; what two kinds call clear is clear.
+enum class ClearTo : std::uint8_t { kAnySensor, kBothKinds };
+
 /// How likely the sensors are to detect a vehicle on this footprint, where the place is in clear
-/// view of a sensor and the sector is watched; nullopt: not seeing it says nothing. A sector that
+/// view and the sector is watched; nullopt: not seeing it says nothing. A sector that
 /// is degraded (a sensor of it is silent) counts for no more than the floor.
 std::optional<double> ClearDetection(const Occluder& footprint, const LocalFrame& frame,
                                      const VisibilityMap& map, const VehicleConfig& vehicle,
-                                     double least_detection);
+                                     ClearTo whom, double least_detection);
 
 }  // namespace v2vouch

@@ -219,8 +219,8 @@ void PriorityPerception::LookAtPlace(PriorityVehicle& vehicle, const LocalFrame&
     if ((track.state_O.mean.head<2>() - footprint.centre_O).norm() < reach_m) return;
   }
   const BridgeConfig& config = settings_->priority.bridge;
-  if (const auto probability =
-          ClearDetection(footprint, frame, map, settings_->vehicle, config.least_detection)) {
+  if (const auto probability = ClearDetection(footprint, frame, map, settings_->vehicle,
+                                              ClearTo::kAnySensor, config.least_detection)) {
     vehicle.empty.OnMiss(frame.stamp, *probability, config);
   } else {
     vehicle.empty.OnCovered();

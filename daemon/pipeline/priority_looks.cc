@@ -150,15 +150,21 @@ std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> PriorityPerception::LookAr
     }
   }
   const bool may_stand = std::abs(claim.speed_mps) < kStanding_mps;
+  const auto clear_to = [&](ClearTo whom, const Occluder& footprint) {
+    return ClearDetection(footprint, frame, map, settings_->vehicle, whom,
+                          settings_->priority.bridge.least_detection);
+  };
+  // Whether the claimed place itself can be judged decides for its surroundings, too.
+  const bool can_be_judged = clear_to(ClearTo::kBothKinds, footprints[0]).has_value();
   for (std::size_t i = 0; i < footprints.size(); ++i) {
     if (is_occupied[i] ||
         (may_stand && map.HasStandingReturn(footprints[i].centre_O, kStandingReach_m))) {
       looks[i].seen = ClaimedPlace::Seen::kOccupied;
     } else if (is_taken[i]) {
       looks[i] = {ClaimedPlace::Seen::kEmpty, kTaken};
-    } else if (const auto detection = ClearDetection(footprints[i], frame, map, settings_->vehicle,
-                                                     settings_->priority.bridge.least_detection)) {
-      looks[i] = {ClaimedPlace::Seen::kEmpty, *detection};
+    } else if (can_be_judged) {
+      const auto detection = clear_to(ClearTo::kAnySensor, footprints[i]);
+      if (detection) looks[i] = {ClaimedPlace::Seen::kEmpty, *detection};
     }
   }
   return looks;

@@ -437,6 +437,18 @@ TEST(PriorityPerception, TeleportInViewOrHiddenIsWithdrawn) {
   }
 }
 
+// A corner house that returns nothing to a side radar looks like free space to it.
+TEST(PriorityPerception, AnEmptyPlaceIsBlamedOnlyWhereRadarAndCameraCouldHaveLooked) {
+  for (const bool is_ahead : {false, true}) {
+    Scene scene;
+    const Eigen::Vector2d p = is_ahead ? Eigen::Vector2d(45.0, 0.0) : Eigen::Vector2d(31.0, -48.0);
+    scene.Run(5.0, [&] {
+      if (scene.frames % 2 == 0) scene.Say(1, p, 0.5 * kPi, 0.0, 0.1);
+    });
+    EXPECT_EQ(scene.perception.TrustOf(1) == TrustState::kSuspect, is_ahead);
+  }
+}
+
 // What hides a vehicle is the likeliest to be taken for it.
 TEST(PriorityPerception, AHiddenVehiclesLocalTrackThatGoesOverToItsNeighbourDragsNothing) {
   for (const double aside_m : {-3.5, 3.5}) {
