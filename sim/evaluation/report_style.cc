@@ -26,7 +26,7 @@ p { margin: 4px 0 10px; max-width: 100ch; }
 .gate .limit { font-size: 13px; color: #6b7480; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; width: 100%;
   margin: 10px 0 4px; }
-th, td { padding: 5px 10px; text-align: right; border-bottom: 1px solid #eceef1; }
+th, td { padding: 5px 7px; text-align: right; border-bottom: 1px solid #eceef1; }
 th { font-weight: 600; font-size: 13px; color: #6b7480; border-bottom: 1px solid #c9ced6; }
 th:first-child, td:first-child { text-align: left; }
 tr.list td { font-weight: 600; background: #f5f6f8; }

@@ -169,7 +169,8 @@ std::string Draw(const Plot& plot) {
     std::vector<Eigen::Vector2d> run;
     const auto flush = [&] {
       if (run.size() == 1) {
-        svg.Circle(run[0].x(), run[0].y(), series.width / 2.0, "fill=\"" + series.colour + "\"");
+        svg.Circle(run[0].x(), run[0].y(), std::max(2.5, series.width),
+                   "fill=\"" + series.colour + "\"");
       } else if (!run.empty()) {
         svg.Polyline(run, style);
       }
