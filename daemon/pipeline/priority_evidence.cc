@@ -124,6 +124,20 @@ bool AreSensorsSure(const LocalTrack& track, const LocalFrame& frame, const Visi
          std::max(track.radar_hits, track.camera_hits) >= config.single_hits;
 }
 
+bool AreClose(const Occluder& claimed, const LocalTrack& track, double slack_m) {
+  const double yaw = track.state_O.mean[kYaw];
+  const Eigen::Vector2d d = claimed.centre_O - track.state_O.mean.head<2>();
+  const double along = std::cos(yaw) * d.x() + std::sin(yaw) * d.y();
+  const double across = -std::sin(yaw) * d.x() + std::cos(yaw) * d.y();
+  const double c = std::abs(std::cos(claimed.yaw_rad - yaw));
+  const double s = std::abs(std::sin(claimed.yaw_rad - yaw));
+  const double half_along =
+      0.5 * (track.extent.length_m + c * claimed.length_m + s * claimed.width_m);
+  const double half_across =
+      0.5 * (track.extent.width_m + s * claimed.length_m + c * claimed.width_m);
+  return std::abs(along) <= half_along + slack_m && std::abs(across) <= half_across + slack_m;
+}
+
 std::optional<double> ClearDetection(const Occluder& footprint, const LocalFrame& frame,
                                      const VisibilityMap& map, const VehicleConfig& vehicle,
                                      ClearTo whom, double least_detection) {

@@ -34,6 +34,9 @@ CoObservation ForTrust(const ClaimInOdometry& claim, const KinematicState& sense
 bool AreSensorsSure(const LocalTrack& track, const LocalFrame& frame, const VisibilityMap& map,
                     const VehicleConfig& vehicle, const SensorSupportConfig& config);
 
+/// Whether the two footprints come within `slack_m` of each other, along and across the track.
+bool AreClose(const Occluder& claimed, const LocalTrack& track, double slack_m);
+
 /// Whose clear view of a place counts: any sensor's, or a radar's and a camera's (of the kinds that
 /// are mounted). The map knows no wall that returns nothing; what two kinds call clear is clear.
 enum class ClearTo : std::uint8_t { kAnySensor, kBothKinds };

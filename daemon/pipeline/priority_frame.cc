@@ -14,6 +14,8 @@ namespace {
 
 // The PRIORITY filter is never allowed this far from a LOCAL track that is being seen.
 constexpr double kApart_m = 0.7;
+constexpr double kMostSlack_m =
+    1.0;  // A bridge is explained by a track, but not from the next lane.
 // A vehicle of which a sensor has had but a part so lately may be misjudged by that part.
 constexpr double kPart_s = 0.5;
 constexpr double kPartPosition_m = 0.5;
@@ -211,12 +213,12 @@ void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sense
 void PriorityPerception::LookAtPlace(PriorityVehicle& vehicle, const LocalFrame& frame,
                                      const VisibilityMap& map) {
   const Occluder footprint = FootprintOfVehicle(vehicle);
-  // Anything seen there, even a track too young to be confirmed, means that it is not empty.
-  const double reach_m =
-      0.5 * std::hypot(footprint.length_m, footprint.width_m) + 3.0 * footprint.position_sigma_m;
+  // Anything seen there, even a track too young to be confirmed, means that it is not empty; but
+  // not a vehicle in the next lane, nor one that is somebody else's.
+  const double slack_m = std::min(2.0 * footprint.position_sigma_m, kMostSlack_m);
   for (const LocalTrack& track : frame.tracks) {
-    if (!IsFresh(track, frame.stamp)) continue;
-    if ((track.state_O.mean.head<2>() - footprint.centre_O).norm() < reach_m) return;
+    if (!IsFresh(track, frame.stamp) || !AreClose(footprint, track, slack_m)) continue;
+    if (!IsHeldByAnother(track.id, vehicle.sender) && !IsAnothers(track.id, vehicle.sender)) return;
   }
   const BridgeConfig& config = settings_->priority.bridge;
   if (const auto probability = ClearDetection(footprint, frame, map, settings_->vehicle,

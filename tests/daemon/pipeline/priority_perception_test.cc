@@ -502,6 +502,20 @@ TEST(PriorityPerception, ABridgeEndsWhereTheSensorsSeeAnotherVehicleOfTheList) {
   EXPECT_TRUE(scene.outputs.reports.empty());
 }
 
+TEST(PriorityPerception, ANeighbourInTheNextLaneDoesNotExplainABridgeInClearView) {
+  Scene scene = Validated(13);
+  Car neighbour = scene.cars[0];
+  neighbour.local_id = 9;
+  neighbour.p.y() += 2.9;
+  scene.cars.push_back(neighbour);
+  scene.cars[0].is_seen = false;  // Gone, in clear view.
+  const Timestamp gone = scene.now;
+  while (!scene.Priority().empty() && ToSeconds(scene.now - gone) < 5.0) {
+    scene.Run(0.05, [&] { scene.Honest(1); });
+  }
+  EXPECT_LT(ToSeconds(scene.now - gone), 2.5);
+}
+
 TEST(PriorityPerception, ABridgeEndsFarFromTheEgo) {
   PriorityConfig config;
   config.bridge.max_distance_m = 35.0;
