@@ -45,6 +45,10 @@ struct Prior {
 
 // Gauss-Markov from one knot to the next.
 struct Wander {
+  explicit Wander(const GpsBiasConfig& config)
+      : keep(std::exp(-config.knot_s / config.wander_decay_s)),
+        sigma(config.wander_sigma_m * std::sqrt(1.0 - keep * keep)) {}
+
   double keep;
   double sigma;
   template <class T>
@@ -62,7 +66,7 @@ ceres::CostFunction* AutoDiff(const Cost& cost) {
 class Window {
  public:
   Window(const std::vector<SenderBlocks>& senders, Timestamp at, const GpsBiasConfig& config)
-      : config_(config), huber_(config.huber) {
+      : config_(config), wander_(config), huber_(config.huber) {
     ceres::Problem::Options options;
     options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     problem_ = std::make_unique<ceres::Problem>(options);
@@ -130,10 +134,8 @@ class Window {
     };
     add_prior(AutoDiff<Prior, 2>({config_.sender_sigma_m}), sender.constant.data());
     add_prior(AutoDiff<Prior, 2>({config_.wander_sigma_m}), sender.knots[0].data());
-    const double keep = std::exp(-config_.knot_s / config_.wander_decay_s);
-    const double sigma = config_.wander_sigma_m * std::sqrt(1.0 - keep * keep);
     for (std::size_t k = 1; k < knots; ++k) {
-      add_prior(AutoDiff<Wander, 2, 2>({keep, sigma}), sender.knots[k - 1].data(),
+      add_prior(AutoDiff<Wander, 2, 2>(wander_), sender.knots[k - 1].data(),
                 sender.knots[k].data());
     }
     for (const BiasBlock& block : blocks.blocks) {
@@ -156,14 +158,13 @@ class Window {
     options.parameter_blocks = {common_.data(), sender.constant.data()};
     for (Block& knot : sender.knots) options.parameter_blocks.push_back(knot.data());
     options.residual_blocks = sender.residuals;
-    Part part;
-    std::vector<double> r;
-    problem_->Evaluate(options, nullptr, &r, nullptr, nullptr);
-    for (const double value : r) part.squares += value * value;
     options.residual_blocks.insert(options.residual_blocks.end(), sender.priors.begin(),
                                    sender.priors.end());
+    Part part;
+    std::vector<double> r;
     ceres::CRSMatrix crs;
     problem_->Evaluate(options, nullptr, &r, nullptr, &crs);
+    for (std::size_t i = 0; i < 2 * sender.residuals.size(); ++i) part.squares += r[i] * r[i];
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(crs.num_rows, crs.num_cols);
     for (int row = 0; row < crs.num_rows; ++row) {
       for (int i = crs.rows[static_cast<std::size_t>(row)];
@@ -198,16 +199,15 @@ class Window {
     out.bias.covariance = E.transpose() * H.ldlt().solve(E);
 
     double squares = 0.0;
-    const double keep = std::exp(-config_.knot_s / config_.wander_decay_s);
-    const double step = config_.wander_sigma_m * std::sqrt(1.0 - keep * keep);
     for (std::size_t k = 0; k < sender.knots.size(); ++k) {
       for (std::size_t i = 0; i < k; ++i) {
         out.change_m = std::max(out.change_m,
                                 (Map(sender.knots[k].data()) - Map(sender.knots[i].data())).norm());
       }
       if (k == 0) continue;
-      squares += ((Map(sender.knots[k].data()) - keep * Map(sender.knots[k - 1].data())) / step)
-                     .squaredNorm();
+      Eigen::Vector2d r;
+      wander_(sender.knots[k - 1].data(), sender.knots[k].data(), r.data());
+      squares += r.squaredNorm();
     }
     out.null_chi_square = squares / (2.0 * static_cast<double>(sender.knots.size() - 1));
 
@@ -220,6 +220,7 @@ class Window {
   }
 
   GpsBiasConfig config_;
+  Wander wander_;
   ceres::HuberLoss huber_;
   std::unique_ptr<ceres::Problem> problem_;
   Block common_{};

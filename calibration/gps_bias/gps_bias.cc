@@ -4,11 +4,6 @@
 #include <algorithm>
 
 namespace v2vouch {
-namespace {
-
-constexpr std::int64_t kSecond_us = 1'000'000;
-
-}  // namespace
 
 void GpsBias::AdvanceTo(Timestamp settled) {
   const Timestamp second = FromMicros(ToMicros(settled) / kSecond_us * kSecond_us);

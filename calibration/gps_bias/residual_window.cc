@@ -7,8 +7,6 @@
 namespace v2vouch {
 namespace {
 
-constexpr std::int64_t kSecond_us = 1'000'000;
-
 // The whole second that ends the one `stamp` lies in.
 std::int64_t EndOf(Timestamp stamp) {
   const std::int64_t us = ToMicros(stamp);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <deque>
 #include <span>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "daemon/data/bias.h"
 
 namespace v2vouch {
+
+inline constexpr std::int64_t kSecond_us = 1'000'000;
 
 /// The residuals of one sender in one whole second of message time, as one.
 struct BiasBlock {

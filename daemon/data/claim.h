@@ -56,6 +56,10 @@ struct ClaimInOdometry {
   [[nodiscard]] Eigen::Vector2d velocity_O() const {
     return speed_mps * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
   }
+  /// The place that it has the sender at by `now`, which may be a little before or after `stamp`.
+  [[nodiscard]] Eigen::Vector2d PlaceAt(Timestamp now) const {
+    return p_O + ToSeconds(now - stamp) * velocity_O();
+  }
 };
 
 }  // namespace v2vouch

@@ -257,20 +257,14 @@ void PriorityPerception::UseClaim(Link& link, PriorityVehicle& vehicle,
   }
 }
 
-// A new track where a hidden vehicle is carried is sooner that vehicle come back.
-bool PriorityPerception::IsAnothersBridge(const LocalTrack& track, SenderId but) const {
-  return std::ranges::any_of(vehicles_, [&](const PriorityVehicle& vehicle) {
-    return vehicle.id != 0 && !vehicle.is_supported && vehicle.sender != but &&
-           (vehicle.filter.mean().head<2>() - track.state_O.mean.head<2>()).norm() <= kOnePlace_m;
-  });
-}
-
 void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
   const PriorityConfig& config = settings_->priority;
   const PairTable::Pair* pair = pairs_.AssignedTo(link.sender);
   if (pair == nullptr || IsHeld(pair->track_id) || link.shared.is_contested()) return;
   const Sensed* sensed = FindSensed(pair->track_id);
-  if (sensed == nullptr || IsAnothersBridge(sensed->track, link.sender)) return;
+  if (sensed == nullptr) return;
+  // A new track where a hidden vehicle is carried is sooner that vehicle come back.
+  if (HasAnotherAt(sensed->track.state_O.mean.head<2>(), link.sender, false)) return;
   const Timestamp last_hit = sensed->track.LastHit();
   const bool is_seen = ToSeconds(here.stamp - last_hit) <= config.bridge.support_s;
   const PairEvidence& evidence = pair->evidence;

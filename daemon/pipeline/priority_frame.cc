@@ -151,18 +151,10 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
       vehicle.filter.position_sigma_m() >= config.bridge.max_sigma_m ||
       (vehicle.filter.mean().head<2>() - frame.ego.X_OB.origin().vector()).norm() >=
           config.bridge.max_distance_m ||
-      IsOnSupported(vehicle)) {
+      // The sensors see another vehicle of the list there: both are one, or this one went astray.
+      HasAnotherAt(vehicle.filter.mean().head<2>(), vehicle.sender, true)) {
     EndVehicle(vehicle, frame.stamp);
   }
-}
-
-// The sensors see another vehicle of the list where this one is carried: both are one, or the
-// bridge has gone astray.
-bool PriorityPerception::IsOnSupported(const PriorityVehicle& bridged) const {
-  return std::ranges::any_of(vehicles_, [&](const PriorityVehicle& other) {
-    return other.id != 0 && other.is_supported &&
-           (other.filter.mean() - bridged.filter.mean()).head<2>().norm() <= kOnePlace_m;
-  });
 }
 
 void PriorityPerception::TakeSensorUpdates(PriorityVehicle& vehicle, const Sensed& sensed,

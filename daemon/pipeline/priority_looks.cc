@@ -48,19 +48,17 @@ bool PriorityPerception::IsRecent(const Link& link, Timestamp now) {
 // Whether another sender claims the same place and motion, and the sensors see one vehicle there.
 bool PriorityPerception::IsPlaceShared(const Link& link, Timestamp now) const {
   const SharedPlaceConfig& config = settings_->priority.trust.shared_place;
-  const auto place = [now](const ClaimInOdometry& claim) -> Eigen::Vector2d {
-    return claim.p_O + ToSeconds(now - claim.stamp) * claim.velocity_O();
-  };
-  const Eigen::Vector2d p_O = place(link.last);
-  const bool is_shared = std::ranges::any_of(links_, [&](const Link& other) {
-    return other.sender != link.sender && IsRecent(other, now) &&
-           (place(other.last) - p_O).norm() <= config.near_m &&
-           (other.last.velocity_O() - link.last.velocity_O()).norm() <= config.same_mps;
+  const Eigen::Vector2d p_O = link.last.PlaceAt(now);
+  const auto near_by = std::ranges::count_if(sensed_, [&](const Sensed& sensed) {
+    return sensed.is_hit && (sensed.track.state_O.mean.head<2>() - p_O).norm() <= config.alone_m;
   });
-  return is_shared && 1 == std::ranges::count_if(sensed_, [&](const Sensed& sensed) {
-                        return sensed.is_hit &&
-                               (sensed.track.state_O.mean.head<2>() - p_O).norm() <= config.alone_m;
-                      });
+  if (near_by != 1) return false;  // There are fewer tracks than senders: asked first.
+  const Eigen::Vector2d v_O = link.last.velocity_O();
+  return std::ranges::any_of(links_, [&](const Link& other) {
+    return other.sender != link.sender && IsRecent(other, now) &&
+           (other.last.PlaceAt(now) - p_O).norm() <= config.near_m &&
+           (other.last.velocity_O() - v_O).norm() <= config.same_mps;
+  });
 }
 
 void PriorityPerception::LookAtClaims(const LocalFrame& frame, const VisibilityMap& map,
@@ -99,8 +97,7 @@ std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> PriorityPerception::LookAr
   const ClaimedPlaceConfig& config = settings_->priority.trust.place;
   std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> looks{};
   const ClaimInOdometry& claim = link.last;
-  const double age_s = ToSeconds(frame.stamp - claim.stamp);
-  const Eigen::Vector2d p_O = claim.p_O + age_s * claim.velocity_O();
+  const Eigen::Vector2d p_O = claim.PlaceAt(frame.stamp);
   if ((p_O - frame.ego.X_OB.origin().vector()).norm() > config.max_distance_m) return looks;
   const double across_m = std::sqrt(config.bias_sigma_m * config.bias_sigma_m +
                                     0.5 * (claim.noise.trace() + claim.alignment.trace()));
@@ -140,15 +137,15 @@ std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> PriorityPerception::LookAr
                           settings_->priority.bridge.least_detection);
   };
   // Whether the claimed place itself can be judged decides for its surroundings, too.
-  const bool can_be_judged = clear_to(ClearTo::kBothKinds, footprints[0]).has_value();
+  const auto claimed = clear_to(ClearTo::kBothKinds, footprints[0]);
   for (std::size_t i = 0; i < footprints.size(); ++i) {
     if (is_occupied[i] ||
         (may_stand && map.HasStandingReturn(footprints[i].centre_O, kStandingReach_m))) {
       looks[i].seen = ClaimedPlace::Seen::kOccupied;
     } else if (is_taken[i]) {
       looks[i] = {ClaimedPlace::Seen::kEmpty, kTaken};
-    } else if (can_be_judged) {
-      const auto detection = clear_to(ClearTo::kAnySensor, footprints[i]);
+    } else if (claimed) {
+      const auto detection = i == 0 ? claimed : clear_to(ClearTo::kAnySensor, footprints[i]);
       if (detection) looks[i] = {ClaimedPlace::Seen::kEmpty, *detection};
     }
   }

@@ -223,6 +223,14 @@ bool PriorityPerception::IsHeld(std::uint64_t local_id) const {
   });
 }
 
+bool PriorityPerception::HasAnotherAt(const Eigen::Vector2d& p_O, SenderId but,
+                                      bool is_supported) const {
+  return std::ranges::any_of(vehicles_, [&](const PriorityVehicle& vehicle) {
+    return vehicle.id != 0 && vehicle.sender != but && vehicle.is_supported == is_supported &&
+           (vehicle.filter.mean().head<2>() - p_O).norm() <= kOnePlace_m;
+  });
+}
+
 std::optional<BiasPrior> PriorityPerception::PriorOf(const Link& link) const {
   if (!link.prior_en) return std::nullopt;
   const Eigen::Matrix2d R_OL = alignment_.X_LO().rotation().transpose();

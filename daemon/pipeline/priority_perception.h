@@ -126,6 +126,10 @@ class PriorityPerception {
   [[nodiscard]] const Sensed* FindSensed(std::uint64_t local_id) const;
   PriorityVehicle* VehicleOf(SenderId sender);
   [[nodiscard]] bool IsHeld(std::uint64_t local_id) const;
+  // Another sender's vehicle in the same place: one that the sensors support, or one that is
+  // bridged.
+  [[nodiscard]] bool HasAnotherAt(const Eigen::Vector2d& p_O, SenderId but,
+                                  bool is_supported) const;
   [[nodiscard]] bool IsHeldByAnother(std::uint64_t local_id, SenderId sender) const;
   [[nodiscard]] bool IsAnothers(std::uint64_t local_id, SenderId sender) const;
   [[nodiscard]] bool IsShifted(Timestamp now) const;
@@ -138,7 +142,6 @@ class PriorityPerception {
   void Remember(const LocalFrame& frame, const VisibilityMap& map);
   void StepVehicle(PriorityVehicle& vehicle, const LocalFrame& frame, const VisibilityMap& map,
                    Outputs& outputs);
-  [[nodiscard]] bool IsOnSupported(const PriorityVehicle& bridged) const;
   void TakeSensorUpdates(PriorityVehicle& vehicle, const Sensed& sensed, const LocalFrame& frame);
   void LookForReturn(PriorityVehicle& vehicle, Timestamp stamp);
   [[nodiscard]] bool IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle,
@@ -165,7 +168,6 @@ class PriorityPerception {
   PriorityVehicle* Inherit(Link& link, const ClaimInOdometry& here, Outputs& outputs);
   void CompareWithSensors(Link& link, PriorityVehicle* vehicle, const ClaimInOdometry& here);
   void UseClaim(Link& link, PriorityVehicle& vehicle, const ClaimInOdometry& here);
-  [[nodiscard]] bool IsAnothersBridge(const LocalTrack& track, SenderId but) const;
   void TryValidate(Link& link, const ClaimInOdometry& here);
 
   void EndVehicle(PriorityVehicle& vehicle, Timestamp stamp);

@@ -46,7 +46,7 @@ bool PriorityPerception::IsWhereClaimed(const LocalTrack& track, const PriorityV
   const double age_s = ToSeconds(stamp - claim.stamp);
   if (std::abs(age_s) > kPatience_s) return true;
   const Eigen::Vector2d off_O =
-      claim.p_O + age_s * claim.velocity_O() - vehicle.filter.bias() - track.state_O.mean.head<2>();
+      claim.PlaceAt(stamp) - vehicle.filter.bias() - track.state_O.mean.head<2>();
   const double yaw_rad = claim.has_course ? claim.yaw_rad : track.state_O.mean[kYaw];
   const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
   const Eigen::Vector2d left(-ahead.y(), ahead.x());

@@ -2,6 +2,7 @@
 #include "daemon/pipeline/timeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -233,10 +234,10 @@ void Timeline::EmitOnce(Event& event, const Outputs& step, Outputs& outputs) {
   }
   // A late frame may move the same verdict to another moment, or let another check come first.
   const double buffer_s = config_.timeline.replay_buffer_s;
+  std::erase_if(reported_, [&](const Reported& old) {
+    return ToSeconds(newest_ - old.stamp) > 2.0 * buffer_s;
+  });
   for (const MisbehaviorReport& report : step.reports) {
-    std::erase_if(reported_, [&](const Reported& old) {
-      return ToSeconds(newest_ - old.stamp) > 2.0 * buffer_s;
-    });
     const bool is_known = std::ranges::any_of(reported_, [&](const Reported& old) {
       return old.sender == report.sender && old.verdict == report.verdict &&
              std::abs(ToSeconds(report.stamp - old.stamp)) <= buffer_s;

@@ -35,7 +35,8 @@ class Views {
  public:
   explicit Views(const RunLog& log) {
     for (const TruthObject& object : log.truth.objects) {
-      std::vector<bool>& seen = seen_[object.id];
+      Seen& seen = seen_[object.id];
+      seen.samples = &object.motion.samples();
       std::optional<Timestamp> since;
       for (const TruthSample& sample : object.motion.samples()) {
         if (!IsSeenByBoth(sample, log.specs)) {
@@ -43,24 +44,26 @@ class Views {
         } else if (!since) {
           since = sample.stamp;
         }
-        seen.push_back(since && ToSeconds(sample.stamp - *since) >= kEligibleAfter_s);
+        seen.long_enough.push_back(since && ToSeconds(sample.stamp - *since) >= kEligibleAfter_s);
       }
-      samples_[object.id] = &object.motion.samples();
     }
   }
 
   [[nodiscard]] bool IsSeen(std::int64_t vehicle, Timestamp t) const {
-    const auto found = samples_.find(vehicle);
-    if (found == samples_.end()) return false;
-    const std::vector<TruthSample>& samples = *found->second;
+    const auto found = seen_.find(vehicle);
+    if (found == seen_.end()) return false;
+    const std::vector<TruthSample>& samples = *found->second.samples;
     const auto after = std::ranges::upper_bound(samples, t, {}, &TruthSample::stamp);
     if (after == samples.begin()) return false;
-    return seen_.at(vehicle)[static_cast<std::size_t>(after - samples.begin() - 1)];
+    return found->second.long_enough[static_cast<std::size_t>(after - samples.begin() - 1)];
   }
 
  private:
-  std::map<std::int64_t, const std::vector<TruthSample>*> samples_;
-  std::map<std::int64_t, std::vector<bool>> seen_;  // By sample: long enough.
+  struct Seen {
+    const std::vector<TruthSample>* samples = nullptr;
+    std::vector<bool> long_enough;  // By sample.
+  };
+  std::map<std::int64_t, Seen> seen_;  // By vehicle.
 };
 
 /// Adds up the time honest devices were heard and mistrusted, and who was relied on in view.
