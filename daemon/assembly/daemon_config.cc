@@ -22,6 +22,13 @@ bool IsChannelName(const std::string& name) {
          std::all_of(name.begin(), name.end(), is_plain);
 }
 
+constexpr std::size_t kMaxIdLength = 64;
+
+bool IsVehicleId(const std::string& id) {
+  return id.size() <= kMaxIdLength &&
+         std::all_of(id.begin(), id.end(), [](char c) { return c >= 0x20 && c < 0x7F; });
+}
+
 class Checks {
  public:
   Checks(const std::string& name, std::vector<std::string>& problems)
@@ -90,6 +97,9 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
   checks.Channel("lcm.channels.status", names.status);
   checks.Channel("lcm.channels.config", names.config);
 
+  if (!IsVehicleId(vehicle.id)) {
+    checks.Problem("vehicle.id", "must have at most 64 printable ASCII characters");
+  }
   constexpr std::size_t kMaxSensors = 32;
   if (vehicle.radars.size() > kMaxSensors) {
     checks.Problem("vehicle.radars", "must be at most 32");

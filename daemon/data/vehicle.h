@@ -124,15 +124,20 @@ struct CameraConfig {
   }
 };
 
-/// The car: its body, its sensors and where its GNSS antenna sits. Defaults are the shipped
-/// vehicle (daemon/config/vehicle.yaml), which the shipped scenarios drive too.
+/// The car: its body, its sensors, where its GNSS antenna sits, and what its own instruments are
+/// known to be off by. Defaults are the shipped vehicle (daemon/config/vehicle.yaml), which the
+/// shipped scenarios drive too.
 struct VehicleConfig {
+  std::string id;  ///< Which car; a calibration of another one is refused. "" = any.
   double length_m = 4.7;
   double width_m = 1.85;
-  double centre_x_m = 1.4;  ///< Centre of the footprint in B, ahead of the rear axle.
+  double centre_x_m = 1.4;   ///< Centre of the footprint in B, ahead of the rear axle.
   double antenna_x_m = 0.8;  ///< GNSS antenna in B.
   double antenna_y_m = 0.0;
-  double gnss_latency_s = 0.0;  ///< How much older a fix is than its stamp says.
+  double gnss_latency_s = 0.0;       ///< How much older a fix is than its stamp says.
+  double speed_scale = 1.0;          ///< Of the odometer: measured = scale x true.
+  double yaw_rate_bias_radps = 0.0;  ///< Of the gyro: measured = true + bias, left positive.
+  double heading_bias_rad = 0.0;     ///< Of the GNSS receiver's heading: likewise.
   std::vector<RadarConfig> radars = DefaultRadars();
   std::vector<CameraConfig> cameras = {CameraConfig{}};
 
@@ -142,12 +147,16 @@ struct VehicleConfig {
 
   template <class Archive>
   void Visit(Archive& a) {
+    a.Text("id", id);
     a.Field("length_m", length_m, {.at_least = 0.5, .at_most = 30.0});
     a.Field("width_m", width_m, {.at_least = 0.3, .at_most = 5.0});
     a.Field("centre_x_m", centre_x_m, {.at_least = -15.0, .at_most = 15.0});
     a.Field("antenna_x_m", antenna_x_m, {.at_least = -30.0, .at_most = 30.0});
     a.Field("antenna_y_m", antenna_y_m, {.at_least = -5.0, .at_most = 5.0});
     a.Field("gnss_latency_s", gnss_latency_s, {.at_least = -1.0, .at_most = 1.0});
+    a.Field("speed_scale", speed_scale, {.at_least = 0.9, .at_most = 1.1});
+    a.Degrees("yaw_rate_bias_degps", yaw_rate_bias_radps, {.at_least = -5.0, .at_most = 5.0});
+    a.Degrees("heading_bias_deg", heading_bias_rad, {.at_least = -180.0, .at_most = 180.0});
     a.Field("radars", radars);
     a.Field("cameras", cameras);
   }

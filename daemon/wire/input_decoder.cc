@@ -116,12 +116,12 @@ Result<InputDecoder::Decoded> InputDecoder::Decode(std::size_t channel,
     case InputKind::kEgoMotion: {
       const auto message = wire::Decode<ego_motion_t>(bytes);
       if (!message) return message.reason();
-      return AsInput(FromWire(*message, received));
+      return AsInput(FromWire(*message, vehicle_, received));
     }
     case InputKind::kGnss: {
       const auto message = wire::Decode<gnss_fix_t>(bytes);
       if (!message) return message.reason();
-      return AsInput(FromWire(*message, received));
+      return AsInput(FromWire(*message, vehicle_, received));
     }
     case InputKind::kBsm: {
       const auto message = wire::Decode<bsm_t>(bytes);

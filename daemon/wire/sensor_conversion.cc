@@ -157,7 +157,8 @@ Result<CameraDetections> FromWire(const camera_detections_t& message, const Came
   return detections;
 }
 
-Result<EgoMotion> FromWire(const ego_motion_t& message, Timestamp received) {
+Result<EgoMotion> FromWire(const ego_motion_t& message, const VehicleConfig& vehicle,
+                           Timestamp received) {
   const int gear = message.gear;
   const bool has_accel = !std::isnan(message.accel_long_mps2);
   const bool has_lateral = !std::isnan(message.accel_lat_mps2);
@@ -174,9 +175,9 @@ Result<EgoMotion> FromWire(const ego_motion_t& message, Timestamp received) {
 
   EgoMotion ego;
   static_cast<MessageHeader&>(ego) = Header(message, 0.0, received);
-  ego.speed_mps = message.speed_mps;
-  ego.speed_sigma_mps = message.speed_sigma_mps;
-  ego.yaw_rate_radps = message.yaw_rate_radps;
+  ego.speed_mps = message.speed_mps / vehicle.speed_scale;
+  ego.speed_sigma_mps = message.speed_sigma_mps / vehicle.speed_scale;
+  ego.yaw_rate_radps = message.yaw_rate_radps - vehicle.yaw_rate_bias_radps;
   ego.yaw_rate_sigma_radps = message.yaw_rate_sigma_radps;
   ego.accel_long_mps2 = Available(message.accel_long_mps2);
   ego.accel_lat_mps2 = Available(message.accel_lat_mps2);
@@ -184,7 +185,8 @@ Result<EgoMotion> FromWire(const ego_motion_t& message, Timestamp received) {
   return ego;
 }
 
-Result<GnssFix> FromWire(const gnss_fix_t& message, Timestamp received) {
+Result<GnssFix> FromWire(const gnss_fix_t& message, const VehicleConfig& vehicle,
+                         Timestamp received) {
   const bool has_yaw = !std::isnan(message.heading_rad);
   const bool has_velocity =
       !std::isnan(message.velocity_east_mps) && !std::isnan(message.velocity_north_mps);
@@ -228,7 +230,7 @@ Result<GnssFix> FromWire(const gnss_fix_t& message, Timestamp received) {
   result.position.longitude_rad = message.longitude_rad;
   result.position.height_m = Available(message.altitude_m).value_or(0.0);
   if (has_yaw) {
-    result.yaw_rad = WrapAngle(kPi / 2.0 - message.heading_rad);
+    result.yaw_rad = WrapAngle(kPi / 2.0 - message.heading_rad - vehicle.heading_bias_rad);
     result.yaw_sigma_rad = message.heading_sigma_rad;
   }
   if (has_velocity) {

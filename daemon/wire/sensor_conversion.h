@@ -15,16 +15,20 @@ namespace v2vouch::wire {
 
 /// Well-formed messages of the own sensors -> data, with the content judged: finite, in a range
 /// that physics allows, and from the sensor whose channel it came on. The sensor's sign
-/// conventions, range offset and clock offset (data/vehicle.h) are applied here and nowhere else.
+/// conventions, range offset and clock offset (data/vehicle.h) are applied here and nowhere else;
+/// so is what the ego's own instruments are known to be off by.
 /// One bad detection or box is left out and counted in `dropped`; the others stay.
 Result<RadarScan> FromWire(const radar_scan_t& message, const RadarConfig& radar, int index,
                            Timestamp received, ReasonCounts& dropped);
 Result<CameraDetections> FromWire(const camera_detections_t& message, const CameraConfig& camera,
                                   int index, Timestamp received, ReasonCounts& dropped);
-Result<EgoMotion> FromWire(const ego_motion_t& message, Timestamp received);
+/// speed = measured / speed_scale,  yaw rate = measured - yaw_rate_bias.
+Result<EgoMotion> FromWire(const ego_motion_t& message, const VehicleConfig& vehicle,
+                           Timestamp received);
 
-/// Heading (clockwise from north) becomes yaw (counter-clockwise from east).
-Result<GnssFix> FromWire(const gnss_fix_t& message, Timestamp received);
+/// Heading (clockwise from north) becomes yaw (counter-clockwise from east), less heading_bias.
+Result<GnssFix> FromWire(const gnss_fix_t& message, const VehicleConfig& vehicle,
+                         Timestamp received);
 
 /// kUnknown for a name we do not know; COCO's names for the same things are taken too.
 ObjectClass ClassOfName(std::string_view name);

@@ -76,6 +76,30 @@ TEST(DaemonConfig, ClashingAndImpossibleNamesAreProblems) {
                            HasSubstr("lcm.channels.config: channel \".*$\"")));
 }
 
+TEST(DaemonConfig, WhatTheInstrumentsAreOffByHasBounds) {
+  const std::string path = testing::TempDir() + "off.yaml";
+  std::ofstream(path) << "vehicle:\n"
+                         "  id: \"\\x01\"\n"
+                         "  speed_scale: 1.2\n"
+                         "  yaw_rate_bias_degps: -5.1\n"
+                         "  heading_bias_deg: 181\n";
+  DaemonConfig config;
+  std::vector<std::string> problems;
+  EXPECT_FALSE(LoadDaemonConfig(path, config, problems));
+  EXPECT_THAT(problems,
+              testing::ElementsAre(
+                  HasSubstr("vehicle.speed_scale = 1.2: must be at least 0.9, at most 1.1"),
+                  HasSubstr("vehicle.yaw_rate_bias_degps = -5.1: must be at least -5, at most 5"),
+                  HasSubstr("vehicle.heading_bias_deg = 181: must be at least -180, at most 180"),
+                  HasSubstr("vehicle.id: must have at most 64 printable ASCII characters")));
+  std::ofstream(path) << "vehicle: {id: WVW-1, speed_scale: 0.98, heading_bias_deg: -1.5}\n";
+  problems.clear();
+  EXPECT_TRUE(LoadDaemonConfig(path, config, problems)) << testing::PrintToString(problems);
+  EXPECT_EQ(config.perception.vehicle.id, "WVW-1");
+  EXPECT_EQ(config.perception.vehicle.speed_scale, 0.98);
+  EXPECT_EQ(config.perception.vehicle.heading_bias_rad, FromDegrees(-1.5));
+}
+
 TEST(DaemonConfig, RangesTheWrongWayRoundAreProblems) {
   DaemonConfig config;
   config.perception.vehicle.radars[0].min_range_m = 20.0;

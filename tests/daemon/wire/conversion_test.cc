@@ -123,23 +123,41 @@ ego_motion_t Ego() {
 }
 
 TEST(EgoFromWire, UnavailableIsEmptyAndNonsenseIsRefused) {
-  const auto ego = FromWire(Ego(), {});
+  const auto ego = FromWire(Ego(), VehicleConfig{}, {});
   ASSERT_TRUE(ego);
   EXPECT_FALSE(ego->accel_long_mps2);
   EXPECT_EQ(ego->accel_lat_mps2, 0.5);
   EXPECT_EQ(ego->gear, Gear::kForward);
   ego_motion_t bad = Ego();
   bad.speed_mps = kNaN;
-  EXPECT_EQ(FromWire(bad, {}).reason(), Reason::kNotFinite);
+  EXPECT_EQ(FromWire(bad, VehicleConfig{}, {}).reason(), Reason::kNotFinite);
   bad = Ego();
   bad.speed_sigma_mps = 0.0;
-  EXPECT_EQ(FromWire(bad, {}).reason(), Reason::kOutOfRange);
+  EXPECT_EQ(FromWire(bad, VehicleConfig{}, {}).reason(), Reason::kOutOfRange);
   bad = Ego();
   bad.gear = 5;
-  EXPECT_EQ(FromWire(bad, {}).reason(), Reason::kOutOfRange);
+  EXPECT_EQ(FromWire(bad, VehicleConfig{}, {}).reason(), Reason::kOutOfRange);
   bad = Ego();
   bad.yaw_rate_radps = 1e9;
-  EXPECT_EQ(FromWire(bad, {}).reason(), Reason::kOutOfRange);
+  EXPECT_EQ(FromWire(bad, VehicleConfig{}, {}).reason(), Reason::kOutOfRange);
+}
+
+// Of an odometer that shows 4 % too much, and of one that shows 4 % too little.
+TEST(EgoFromWire, OdometerScaleAndGyroBiasAreTakenOff) {
+  for (const double sign : {1.0, -1.0}) {
+    VehicleConfig vehicle;
+    vehicle.speed_scale = 1.0 + sign * 0.04;
+    vehicle.yaw_rate_bias_radps = sign * 0.003;
+    ego_motion_t message = Ego();
+    message.speed_mps = -10.0 * vehicle.speed_scale;  // In reverse too.
+    message.yaw_rate_radps = 0.2 + sign * 0.003;
+    const auto ego = FromWire(message, vehicle, {});
+    ASSERT_TRUE(ego);
+    EXPECT_NEAR(ego->speed_mps, -10.0, 1e-12);
+    EXPECT_NEAR(ego->speed_sigma_mps, 0.1 / vehicle.speed_scale, 1e-12);
+    EXPECT_NEAR(ego->yaw_rate_radps, 0.2, 1e-12);
+    EXPECT_EQ(ego->yaw_rate_sigma_radps, message.yaw_rate_sigma_radps);
+  }
 }
 
 gnss_fix_t Fix() {
@@ -164,30 +182,45 @@ gnss_fix_t Fix() {
 
 TEST(GnssFromWire, HeadingClockwiseFromNorthBecomesYawFromEast) {
   gnss_fix_t message = Fix();
-  EXPECT_NEAR(*FromWire(message, {})->yaw_rad, 0.0, 1e-12);
+  EXPECT_NEAR(*FromWire(message, VehicleConfig{}, {})->yaw_rad, 0.0, 1e-12);
   message.heading_rad = 0.0;  // North.
-  EXPECT_NEAR(*FromWire(message, {})->yaw_rad, kPi / 2.0, 1e-12);
+  EXPECT_NEAR(*FromWire(message, VehicleConfig{}, {})->yaw_rad, kPi / 2.0, 1e-12);
   message.heading_rad = 1.5 * kPi;  // West.
-  EXPECT_NEAR(std::abs(*FromWire(message, {})->yaw_rad), kPi, 1e-12);
+  EXPECT_NEAR(std::abs(*FromWire(message, VehicleConfig{}, {})->yaw_rad), kPi, 1e-12);
   message.heading_rad = kNaN;
-  EXPECT_FALSE(FromWire(message, {})->yaw_rad);
-  EXPECT_EQ(FromWire(message, {})->position.height_m, 0.0);
-  EXPECT_EQ(FromWire(message, {})->covariance_enu(0, 1), 1.0);
+  EXPECT_FALSE(FromWire(message, VehicleConfig{}, {})->yaw_rad);
+  EXPECT_EQ(FromWire(message, VehicleConfig{}, {})->position.height_m, 0.0);
+  EXPECT_EQ(FromWire(message, VehicleConfig{}, {})->covariance_enu(0, 1), 1.0);
+}
+
+// A receiver whose heading reads 3 degrees too far to the left of a car that drives due east says
+// 87 degrees from north; one that reads too far to the right says 93.
+TEST(GnssFromWire, HeadingBiasIsTakenOff) {
+  for (const double bias_deg : {3.0, -3.0}) {
+    VehicleConfig vehicle;
+    vehicle.heading_bias_rad = FromDegrees(bias_deg);
+    gnss_fix_t message = Fix();
+    message.heading_rad = FromDegrees(90.0 - bias_deg);
+    EXPECT_NEAR(*FromWire(message, vehicle, {})->yaw_rad, 0.0, 1e-12);
+    message.heading_rad = FromDegrees(270.0 - bias_deg);
+    EXPECT_NEAR(std::abs(*FromWire(message, vehicle, {})->yaw_rad), kPi, 1e-12);
+    EXPECT_EQ(*FromWire(message, vehicle, {})->velocity_en_mps, Eigen::Vector2d(3.0, 4.0));
+  }
 }
 
 TEST(GnssFromWire, WhatIsNoCovarianceIsRefused) {
   gnss_fix_t message = Fix();
   message.covariance_enu_m2[1] = 2.0;  // Not symmetric.
-  EXPECT_EQ(FromWire(message, {}).reason(), Reason::kOutOfRange);
+  EXPECT_EQ(FromWire(message, VehicleConfig{}, {}).reason(), Reason::kOutOfRange);
   message = Fix();
   message.covariance_enu_m2[1] = message.covariance_enu_m2[3] = 7.0;  // Correlation above 1.
-  EXPECT_EQ(FromWire(message, {}).reason(), Reason::kOutOfRange);
+  EXPECT_EQ(FromWire(message, VehicleConfig{}, {}).reason(), Reason::kOutOfRange);
   message = Fix();
   message.covariance_enu_m2[8] = -1.0;
-  EXPECT_EQ(FromWire(message, {}).reason(), Reason::kOutOfRange);
+  EXPECT_EQ(FromWire(message, VehicleConfig{}, {}).reason(), Reason::kOutOfRange);
   message = Fix();
   message.covariance_enu_m2[8] = kNaN;
-  EXPECT_EQ(FromWire(message, {}).reason(), Reason::kNotFinite);
+  EXPECT_EQ(FromWire(message, VehicleConfig{}, {}).reason(), Reason::kNotFinite);
 }
 
 bsm_t RawBsm() {
