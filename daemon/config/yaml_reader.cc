@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "daemon/config/number_text.h"
+#include "daemon/config/bounds_text.h"
 
 namespace v2vouch::config {
 namespace {
@@ -41,26 +41,6 @@ std::string Suggestion(std::string_view name, const std::vector<std::string_view
     }
   }
   return best.empty() ? "" : " (did you mean " + std::string(best) + "?)";
-}
-
-std::string Words(const Bounds& bounds) {
-  std::string words;
-  const auto add = [&words](const char* word, const std::optional<double>& bound) {
-    if (!bound) return;
-    words += words.empty() ? "must be " : ", ";
-    words += std::string(word) + " " + NumberText(*bound);
-  };
-  add("above", bounds.above);
-  add("at least", bounds.at_least);
-  add("below", bounds.below);
-  add("at most", bounds.at_most);
-  return words;
-}
-
-bool AreKept(const Bounds& bounds, double value) {
-  return (!bounds.above || value > *bounds.above) &&
-         (!bounds.at_least || value >= *bounds.at_least) &&
-         (!bounds.below || value < *bounds.below) && (!bounds.at_most || value <= *bounds.at_most);
 }
 
 // For messages: short, and no control characters on the user's terminal.
@@ -164,12 +144,12 @@ bool YamlReader::ReadNumber(const YamlNode& node, const std::string& path, doubl
     is_number = error == std::errc{} && end == text.data() + text.size() && std::isfinite(number);
   }
   if (!is_number) {
-    const std::string words = Words(bounds);
+    const std::string words = BoundsText(bounds);
     Report(node, path, words.empty() ? "must be a number" : words + " (a number)");
     return false;
   }
   if (!AreKept(bounds, number)) {
-    Report(node, path, Words(bounds));
+    Report(node, path, BoundsText(bounds));
     return false;
   }
   value = number;
@@ -191,7 +171,7 @@ std::optional<std::int64_t> YamlReader::ReadWhole(const YamlNode& node, const st
     }
   }
   if (!whole) {
-    const std::string words = Words(bounds);
+    const std::string words = BoundsText(bounds);
     Report(node, path, words.empty() ? "must be a whole number" : words + " (a whole number)");
     return std::nullopt;
   }
@@ -199,7 +179,7 @@ std::optional<std::int64_t> YamlReader::ReadWhole(const YamlNode& node, const st
                             ? static_cast<double>(static_cast<std::uint64_t>(*whole))
                             : static_cast<double>(*whole);
   if (!AreKept(bounds, number)) {
-    Report(node, path, Words(bounds));
+    Report(node, path, BoundsText(bounds));
     return std::nullopt;
   }
   return whole;
