@@ -12,6 +12,7 @@
 #include "daemon/app/latency_meter.h"
 #include "daemon/app/message_queue.h"
 #include "daemon/app/receiver.h"
+#include "daemon/assembly/calibration_in_force.h"
 #include "daemon/assembly/engine.h"
 #include "daemon/io/socket_figures.h"
 
@@ -52,6 +53,7 @@ class Daemon {
       std::this_thread::sleep_for(kPopTimeout);
     }
     spdlog::info("event=started version={} inputs={}", V2VOUCH_VERSION, engine_.channels().size());
+    LogCalibration();
     engine_.Start(outbox_);
     Publish();
     last_list_ = last_status_ = last_housekeeping_ = Clock::now();
@@ -160,6 +162,17 @@ class Daemon {
       spdlog::warn("event=queue_full own={} bsm={}", queue_.own_drops(), queue_.bsm_drops());
       logged_drops_ = drops;
     }
+  }
+
+  void LogCalibration() {
+    const auto count = [this](CalibrationVerdict verdict) {
+      return CountVerdicts(config_, verdict);
+    };
+    spdlog::info(
+        "event=calibration source=\"{}\" estimated={} weak={} prior={} at_bound={} rejected={}",
+        CalibrationTitle(config_), count(CalibrationVerdict::kEstimated),
+        count(CalibrationVerdict::kWeak), count(CalibrationVerdict::kPrior),
+        count(CalibrationVerdict::kAtBound), count(CalibrationVerdict::kRejected));
   }
 
   void ReportWaiting() {

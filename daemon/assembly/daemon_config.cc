@@ -2,6 +2,7 @@
 #include "daemon/assembly/daemon_config.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "daemon/config/yaml_reader.h"
@@ -130,6 +131,15 @@ bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
                       std::vector<std::string>& problems) {
   if (!path.empty()) config::Load(path, config, problems);
   CheckConfig(config, path.empty() ? "built-in configuration" : path, problems);
+  config.calibrated.reset();
+  if (!config.calibration.empty()) {
+    const auto file = std::filesystem::path(path).parent_path() / config.calibration;
+    config.calibrated = LoadCalibration(file.string(), problems);
+    if (problems.empty()) {
+      ApplyCalibration(*config.calibrated, config.perception.vehicle, problems);
+      for (std::string& problem : problems) problem = file.string() + ": " + problem;
+    }
+  }
   return problems.empty();
 }
 

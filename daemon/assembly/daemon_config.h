@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "daemon/assembly/calibration_file.h"
 #include "daemon/base/visit.h"
 #include "daemon/pipeline/perception_config.h"
 #include "daemon/wire/channels.h"
@@ -30,11 +32,15 @@ struct LcmConfig {
 
 /// Everything in vehicle.yaml. The defaults are the shipped vehicle (daemon/config/vehicle.yaml).
 struct DaemonConfig {
+  std::string calibration;  ///< File of calibrated values, from this file's folder; "" = none.
   PerceptionConfig perception;
   LcmConfig lcm;
+  /// What `calibration` held; its values are in perception.vehicle already.
+  std::optional<CalibrationFile> calibrated;
 
   template <class Archive>
   void Visit(Archive& a) {
+    a.Text("calibration", calibration);
     perception.Visit(a);
     a.Field("lcm", lcm);
   }
@@ -45,7 +51,8 @@ struct DaemonConfig {
 void CheckConfig(const DaemonConfig& config, const std::string& name,
                  std::vector<std::string>& problems);
 
-/// Defaults where `path` is empty. @return false with all problems named.
+/// Defaults where `path` is empty; the calibration that it names is read and applied. @return false
+/// with all problems named.
 bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
                       std::vector<std::string>& problems);
 

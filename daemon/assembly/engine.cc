@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "daemon/assembly/calibration_in_force.h"
 #include "daemon/wire/output_encoder.h"
 
 namespace v2vouch {
@@ -16,33 +17,6 @@ bool RefusesTheInput(Reason reason) {
          reason != Reason::kSenderNumerics && reason != Reason::kTrackTableFull;
 }
 
-wire::CalibrationInForce CalibrationOf(const VehicleConfig& vehicle) {
-  wire::CalibrationInForce calibration;
-  calibration.source = "configuration";
-  const auto add = [&](const std::string& sensor, const char* parameter, double value) {
-    calibration.parameters.push_back({sensor + "." + parameter, value, kNaN, "PRIOR"});
-  };
-  for (const RadarConfig& radar : vehicle.radars) {
-    const std::string sensor = "radar_" + radar.name;
-    add(sensor, "x_m", radar.x_m);
-    add(sensor, "y_m", radar.y_m);
-    add(sensor, "yaw_rad", radar.yaw_rad);
-    add(sensor, "range_offset_m", radar.range_offset_m);
-    add(sensor, "clock_offset_s", radar.clock_offset_s);
-  }
-  for (const CameraConfig& camera : vehicle.cameras) {
-    const std::string sensor = "camera_" + camera.name;
-    add(sensor, "x_m", camera.x_m);
-    add(sensor, "y_m", camera.y_m);
-    add(sensor, "z_m", camera.z_m);
-    add(sensor, "yaw_rad", camera.yaw_rad);
-    add(sensor, "pitch_rad", camera.pitch_rad);
-    add(sensor, "roll_rad", camera.roll_rad);
-    add(sensor, "clock_offset_s", camera.clock_offset_s);
-  }
-  return calibration;
-}
-
 }  // namespace
 
 Engine::Engine(const DaemonConfig& config, std::unique_ptr<BiasEstimator> bias)
@@ -51,13 +25,13 @@ Engine::Engine(const DaemonConfig& config, std::unique_ptr<BiasEstimator> bias)
       perception_(config.perception, std::move(bias)),
       watch_(decoder_.channels()) {
   status_.version = V2VOUCH_VERSION;
-  status_.calibration = "configuration";
+  status_.calibration = CalibrationTitle(config);
 }
 
 void Engine::Start(Outbox& outbox) {
   const wire::ChannelNames& names = config_.lcm.channels;
   wire::EncodeText({}, "configuration", PrintDaemonConfig(config_), outbox.Add(names.config));
-  wire::EncodeCalibration(CalibrationOf(config_.perception.vehicle), outbox.Add(names.calibration));
+  wire::EncodeCalibration(CalibrationInForce(config_), outbox.Add(names.calibration));
 }
 
 void Engine::OnMessage(std::string_view channel, std::span<const std::uint8_t> bytes,

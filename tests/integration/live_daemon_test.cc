@@ -135,6 +135,23 @@ class StatusListener {
   int rounds_ = 0;
 };
 
+// A calibration that cannot be trusted must not be run on, nor quietly run without.
+TEST_F(LiveDaemon, ABadCalibrationEndsEveryProgramWithCode2) {
+  std::ofstream(Path("vehicle.yaml")) << "calibration: broken.yaml\n";
+  std::ofstream(Path("broken.yaml")) << "version: 1\n";
+  WriteLog(Path("drive.lcm"), DriveMessages(0.2));
+  const std::vector<std::vector<std::string>> programs = {
+      {bin_ + "/v2vouchd", "--config", Path("vehicle.yaml")},
+      {bin_ + "/v2vouch-replay", Path("drive.lcm"), "--out", Path("out.lcm"), "--config",
+       Path("vehicle.yaml")}};
+  for (const auto& arguments : programs) {
+    Program program(arguments, Path("words.txt"));
+    EXPECT_EQ(program.Wait(10s), 2);
+    EXPECT_THAT(program.Output(), HasSubstr("broken.yaml: does not end in a checksum line"));
+  }
+  EXPECT_FALSE(fs::exists(Path("out.lcm")));
+}
+
 TEST_F(LiveDaemon, FedByLcmLogplayerGivesTheDigestsOfTheReplay) {
   WriteLog(Path("drive.lcm"), DriveMessages(3.0));
   Program replay(

@@ -109,5 +109,35 @@ TEST(DaemonConfig, RangesTheWrongWayRoundAreProblems) {
                                                        HasSubstr("vehicle.cameras[0].distortion")));
 }
 
+TEST(DaemonConfig, CalibrationIsReadFromTheFileOwnFolderAndApplied) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "calibrated";
+  std::filesystem::create_directories(folder);
+  const std::string path = (folder / "vehicle.yaml").string();
+  std::ofstream(path) << "calibration: mine.yaml\nvehicle: {id: A}\n";
+  CalibrationFile file;
+  file.vehicle_id = "A";
+  file.parameters = {{"radar_front_left.yaw_deg", 55.4, 0.02, 55.0, 1.0,
+                      CalibrationVerdict::kEstimated, "static Doppler"}};
+  std::string error;
+  ASSERT_TRUE(SaveCalibration((folder / "mine.yaml").string(), file, error)) << error;
+  DaemonConfig config;
+  std::vector<std::string> problems;
+  ASSERT_TRUE(LoadDaemonConfig(path, config, problems)) << testing::PrintToString(problems);
+  EXPECT_EQ(config.perception.vehicle.radars[1].yaw_rad, FromDegrees(55.4));
+  ASSERT_TRUE(config.calibrated);
+  EXPECT_EQ(config.calibrated->checksum.size(), 64u);
+  EXPECT_THAT(PrintDaemonConfig(config), HasSubstr("yaw_deg: 55.4"));
+
+  std::ofstream(path) << "calibration: mine.yaml\nvehicle: {id: B}\n";
+  EXPECT_FALSE(LoadDaemonConfig(path, config, problems));
+  EXPECT_THAT(problems, testing::ElementsAre(
+                            testing::AllOf(HasSubstr("calibrated/mine.yaml"),
+                                           HasSubstr("is for vehicle \"A\", this one is \"B\""))));
+  problems.clear();
+  std::ofstream(path) << "calibration: none.yaml\n";
+  EXPECT_FALSE(LoadDaemonConfig(path, config, problems));
+  EXPECT_THAT(problems, testing::ElementsAre(HasSubstr("calibrated/none.yaml: No such file")));
+}
+
 }  // namespace
 }  // namespace v2vouch

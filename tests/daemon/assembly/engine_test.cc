@@ -4,11 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "daemon/wire/codec.h"
 #include "tests/support/synthetic_drive.h"
 #include "tests/support/wire_drive.h"
+#include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/daemon_status_t.hpp"
 #include "v2vouch/text_t.hpp"
@@ -171,6 +173,51 @@ TEST(Engine, StaleListsAreMarkedAndInNoDigest) {
     EXPECT_EQ(list->stale, 1);
   }
   EXPECT_EQ(engine.digest_local(), digest);
+}
+
+TEST(Engine, CalibrationInForceIsToldByNameUnitAndVerdict) {
+  DaemonConfig config;
+  config.perception.vehicle.radars[1].yaw_rad = FromDegrees(55.4);
+  const auto told = [](const DaemonConfig& by) {
+    Engine engine(by, std::make_unique<NullBiasEstimator>());
+    Outbox outbox;
+    engine.Start(outbox);
+    engine.PublishStatus(outbox);
+    const auto status = wire::Decode<daemon_status_t>(outbox.messages()[2].bytes);
+    const auto calibration = wire::Decode<calibration_t>(outbox.messages()[1].bytes);
+    EXPECT_TRUE(status && calibration);
+    return std::pair(*calibration, status->calibration);
+  };
+  const auto find = [](const calibration_t& calibration, const std::string& name) {
+    for (const auto& parameter : calibration.parameters) {
+      if (parameter.name == name) return parameter;
+    }
+    ADD_FAILURE() << name;
+    return calibration_parameter_t{};
+  };
+  const auto [bare, bare_title] = told(config);
+  EXPECT_EQ(bare.source, "configuration");
+  EXPECT_EQ(bare_title, "configuration");
+  EXPECT_EQ(bare.checksum, "");
+  EXPECT_NEAR(find(bare, "radar_front_left.yaw_deg").value, 55.4, 1e-12);
+  EXPECT_EQ(find(bare, "radar_front_left.yaw_deg").verdict, "PRIOR");
+  EXPECT_TRUE(std::isnan(find(bare, "ego.speed_scale").std));
+
+  config.calibration = "somewhere/mine.yaml";
+  config.calibrated.emplace().checksum = std::string(64, 'b');
+  config.calibrated->parameters = {
+      {"radar_front_left.yaw_deg", 55.4, 0.02, 55.0, 1.0, CalibrationVerdict::kWeak, ""},
+      {"ego.speed_scale", 3.0, 0.02, 1.0, 0.05, CalibrationVerdict::kRejected, ""}};
+  const auto [filed, filed_title] = told(config);
+  EXPECT_EQ(filed.source, "mine.yaml");
+  EXPECT_EQ(filed_title, "mine.yaml bbbbbbbbbbbbbbbb");
+  EXPECT_EQ(filed.checksum, std::string(64, 'b'));
+  EXPECT_EQ(find(filed, "radar_front_left.yaw_deg").verdict, "WEAK");
+  EXPECT_EQ(find(filed, "radar_front_left.yaw_deg").std, 0.02);
+  // What is in force, with the doubt that is left of it.
+  EXPECT_EQ(find(filed, "ego.speed_scale").verdict, "REJECTED");
+  EXPECT_EQ(find(filed, "ego.speed_scale").value, 1.0);
+  EXPECT_EQ(find(filed, "ego.speed_scale").std, 0.05);
 }
 
 TEST(Engine, PicturesWithoutADetectorAreRefusedByName) {
