@@ -29,7 +29,7 @@ struct Look {
 }  // namespace
 
 ViewTimeline::ViewTimeline(const World& world, std::uint64_t seed) {
-  const VehicleConfig& vehicle = world.scenario().vehicle;
+  const VehicleConfig& vehicle = world.vehicle();
   std::vector<RadarSimulator> radars;
   std::vector<CameraSimulator> cameras;
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {

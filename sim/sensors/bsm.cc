@@ -33,8 +33,8 @@ struct Channel {
 Channel Between(const World& world, const Snapshot& snapshot, const Vec2& sender,
                 std::uint32_t sender_id) {
   const RadioSpec& radio = world.scenario().radio;
-  const Vec2 receiver = snapshot.ego.PointAt(world.scenario().vehicle.antenna_x_m,
-                                             world.scenario().vehicle.antenna_y_m);
+  const Vec2 receiver =
+      snapshot.ego.PointAt(world.vehicle().antenna_x_m, world.vehicle().antenna_y_m);
   double factor = 1.0;
   for (const Wall& wall : world.walls()) {
     if (LineCrossesOutline(receiver, sender, wall.outline)) {
@@ -186,7 +186,7 @@ std::optional<Message> BsmSender::NextMessage() {
   Statement& said = message.said;
   Vec2 radio;  // Where the antenna is.
   if (actor_ < 0) {
-    const VehicleConfig& vehicle = world_.scenario().vehicle;
+    const VehicleConfig& vehicle = world_.vehicle();
     said.centre = snapshot.ego.PointAt(vehicle.centre_x_m, 0.0);
     said.yaw_rad = snapshot.ego.yaw_rad;
     said.speed_mps = snapshot.ego.speed_mps;
@@ -197,8 +197,9 @@ std::optional<Message> BsmSender::NextMessage() {
     radio = is_device() ? snapshot.ego.PointAt(-kDeviceBehind_m, 0.0) : said.centre;
   } else {
     const Actor& actor = world_.actors()[static_cast<std::size_t>(actor_)];
-    if (!actor.trajectory.Exists(time)) return std::nullopt;
-    const Motion motion = actor.trajectory.At(time);
+    const double then = time - sender_.position_age_s;
+    if (!actor.trajectory.Exists(time) || !actor.trajectory.Exists(then)) return std::nullopt;
+    const Motion motion = actor.trajectory.At(then);
     said.centre = motion.centre;
     said.yaw_rad = motion.yaw_rad;
     said.speed_mps = motion.speed_mps;

@@ -81,7 +81,7 @@ void CameraSimulator::PixelBox::Add(const Eigen::Vector2d& pixel) {
 
 CameraSimulator::CameraSimulator(const World& world, int index, std::uint64_t seed)
     : world_(world),
-      camera_(world.scenario().vehicle.cameras[static_cast<std::size_t>(index)]),
+      camera_(world.vehicle().cameras[static_cast<std::size_t>(index)]),
       index_(static_cast<std::uint64_t>(index)),
       seed_(seed),
       skyline_(HalfSpan(camera_), kRay_rad) {
@@ -248,7 +248,17 @@ void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
       picture.boxes.push_back(box);
     }
   }
+  if (sensors.outlier_share > 0.0) Spoil(seq, picture);
   picture.num_boxes = static_cast<std::int32_t>(picture.boxes.size());
+}
+
+void CameraSimulator::Spoil(std::int64_t seq, camera_detections_t& picture) const {
+  Random random = SubjectRandom(seed_, "camera outlier", {index_, static_cast<std::uint64_t>(seq)});
+  for (camera_box_t& box : picture.boxes) {
+    if (!random.Bernoulli(world_.scenario().sensors.outlier_share)) continue;
+    const double by_px = kOutlierSigmas * random.Uniform(-1.0, 1.0) * camera_.edge_sigma_px;
+    (random.Bernoulli(0.5) ? box.left_px : box.top_px) += by_px;
+  }
 }
 
 }  // namespace v2vouch::sim

@@ -51,6 +51,8 @@ class CameraSimulator {
   void LookClosely(const Snapshot& snapshot, double extra_pitch_rad, std::vector<Seen>& seen);
   [[nodiscard]] Eigen::Vector3d ToBody(const EgoTruth& ego, const Vec2& point, double z_m) const;
 
+  void Spoil(std::int64_t seq, camera_detections_t& picture) const;
+
   const World& world_;
   CameraConfig camera_;
   std::uint64_t index_;

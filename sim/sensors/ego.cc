@@ -41,7 +41,8 @@ void OdometrySimulator::Measure(const Snapshot& snapshot, std::int64_t seq,
   const double lat_noise = random.Normal(0.0, spec.accel_sigma_mps2);
   const bool stands = std::abs(ego.speed_mps) < 0.1;
   motion.seq = seq;
-  motion.speed_mps = stands ? 0.0 : spec.speed_scale * ego.speed_mps + speed_noise;
+  const double speed_mps = ego.speed_mps - spec.y_m * ego.yaw_rate_radps;
+  motion.speed_mps = stands ? 0.0 : spec.speed_scale * speed_mps + speed_noise;
   // What a careful supplier would state: noise and scale error together.
   motion.speed_sigma_mps =
       std::hypot(std::max(0.01, spec.speed_sigma_mps), (spec.speed_scale - 1.0) * ego.speed_mps);
@@ -64,7 +65,7 @@ EgoGnssSimulator::EgoGnssSimulator(const World& world, std::uint64_t seed)
 void EgoGnssSimulator::Measure(const Snapshot& snapshot, std::int64_t seq, double dt_s,
                                gnss_fix_t& fix) {
   const EgoGnssSpec& spec = world_.scenario().gnss;
-  const VehicleConfig& vehicle = world_.scenario().vehicle;
+  const VehicleConfig& vehicle = world_.vehicle();
   Random random = SubjectRandom(seed_, "ego gnss noise", {static_cast<std::uint64_t>(seq)});
   const GnssError::Value error = error_.Step(dt_s);
   const Vec2 antenna = snapshot.ego.PointAt(vehicle.antenna_x_m, vehicle.antenna_y_m);
@@ -95,15 +96,26 @@ void EgoGnssSimulator::Measure(const Snapshot& snapshot, std::int64_t seq, doubl
   const double east_noise = random.Normal(0.0, spec.velocity_sigma_mps);
   const double north_noise = random.Normal(0.0, spec.velocity_sigma_mps);
   const double up_noise = random.Normal(0.0, spec.velocity_sigma_mps);
+  Vec2 outlier_mps = Vec2::Zero();
+  double outlier_rad = 0.0;
+  const double outliers = world_.scenario().sensors.outlier_share;
+  if (outliers > 0.0 && random.Bernoulli(outliers)) {
+    const double by = kOutlierSigmas * random.Uniform(-1.0, 1.0);
+    if (random.Bernoulli(0.5)) {
+      outlier_rad = by * spec.heading_sigma_rad;
+    } else {
+      outlier_mps = by * spec.velocity_sigma_mps * Direction(random.Uniform(-kPi, kPi));
+    }
+  }
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  fix.heading_rad =
-      spec.has_heading
-          ? HeadingOf(snapshot.ego.yaw_rad + place.turn_rad + spec.heading_bias_rad + heading_noise)
-          : nan;
+  fix.heading_rad = spec.has_heading
+                        ? HeadingOf(snapshot.ego.yaw_rad + place.turn_rad + spec.heading_bias_rad +
+                                    heading_noise + outlier_rad)
+                        : nan;
   fix.heading_sigma_rad =
       spec.has_heading ? std::max(1e-4, std::hypot(spec.heading_sigma_rad, spec.heading_bias_rad))
                        : nan;
-  const Vec2 velocity_W = snapshot.ego.VelocityAt(antenna) + drag_mps;
+  const Vec2 velocity_W = snapshot.ego.VelocityAt(antenna) + drag_mps + outlier_mps;
   const Vec2 east_W = Direction(-place.turn_rad);  // True east, seen in W.
   fix.velocity_east_mps = velocity_W.dot(east_W) + east_noise;
   fix.velocity_north_mps = velocity_W.dot(LeftOf(east_W)) + north_noise;

@@ -100,7 +100,7 @@ Vec2 Mirrored(const Vec2& p, const Vec2& a, const Vec2& b) {
 
 RadarSimulator::RadarSimulator(const World& world, int index, std::uint64_t seed)
     : world_(world),
-      radar_(world.scenario().vehicle.radars[static_cast<std::size_t>(index)]),
+      radar_(world.vehicle().radars[static_cast<std::size_t>(index)]),
       index_(static_cast<std::uint64_t>(index)),
       seed_(seed),
       skyline_(radar_.half_fov_rad, kRay_rad) {
@@ -350,12 +350,31 @@ void RadarSimulator::Scan(const Snapshot& snapshot, std::int64_t seq, radar_scan
   scan.detections.clear();
   Look(snapshot, sights_);
   AddVehicles(snapshot, seq, antenna, scan);
-  if (world_.scenario().sensors.mode == SensorMode::kRealistic) {
-    AddStatics(seq, antenna, scan);
+  const SensorsSpec& sensors = world_.scenario().sensors;
+  const bool realistic = sensors.mode == SensorMode::kRealistic;
+  if (realistic || sensors.static_returns) AddStatics(seq, antenna, scan);
+  if (realistic) {
     AddGhosts(snapshot, seq, antenna, scan);
     AddClutter(seq, antenna, scan);
   }
+  if (sensors.outlier_share > 0.0) Spoil(seq, scan);
   scan.num_detections = static_cast<std::int32_t>(scan.detections.size());
+}
+
+void RadarSimulator::Spoil(std::int64_t seq, radar_scan_t& scan) const {
+  Random random = SubjectRandom(seed_, "radar outlier", {index_, static_cast<std::uint64_t>(seq)});
+  for (radar_detection_t& detection : scan.detections) {
+    if (!random.Bernoulli(world_.scenario().sensors.outlier_share)) continue;
+    const double by = kOutlierSigmas * random.Uniform(-1.0, 1.0);
+    const double which = random.Uniform();
+    if (which < 1.0 / 3.0) {
+      detection.range_m = std::max(0.1, detection.range_m + by * radar_.range_sigma_m);
+    } else if (which < 2.0 / 3.0) {
+      detection.azimuth_rad = WrapAngle(detection.azimuth_rad + by * radar_.azimuth_sigma_rad);
+    } else {
+      detection.range_rate_mps += by * radar_.range_rate_sigma_mps;
+    }
+  }
 }
 
 }  // namespace v2vouch::sim

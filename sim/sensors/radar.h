@@ -64,6 +64,8 @@ class RadarSimulator {
   bool AddPoint(const Antenna& antenna, const Vec2& place, const Vec2& velocity, double rcs_dbsm,
                 int track_id, Random& random, radar_scan_t& scan) const;
 
+  void Spoil(std::int64_t seq, radar_scan_t& scan) const;
+
   const World& world_;
   RadarConfig radar_;
   std::uint64_t index_;

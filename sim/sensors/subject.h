@@ -9,6 +9,9 @@
 
 namespace v2vouch::sim {
 
+/// Outliers (SensorsSpec::outlier_share) are off by up to so many sigma.
+inline constexpr double kOutlierSigmas = 30.0;
+
 /// The generator of one subject: a name ("radar"), and numbers (which radar, which scan, which
 /// vehicle). Every look at every vehicle has a generator of its own, so what is added to a scenario
 /// changes nobody else's draws.

@@ -13,7 +13,7 @@ constexpr double kReach_m = 150.0;
 }  // namespace
 
 TruthWriter::TruthWriter(const World& world, std::uint64_t seed) : world_(world), seed_(seed) {
-  const VehicleConfig& vehicle = world.scenario().vehicle;
+  const VehicleConfig& vehicle = world.vehicle();
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
     radars_.emplace_back(world, static_cast<int>(i), seed);
   }
@@ -65,8 +65,8 @@ void TruthWriter::Write(const Snapshot& snapshot, std::int64_t seq, truth_list_t
       truth_sensor_t sensor{};
       // Full channel names: a radar and a camera may share one name.
       sensor.sensor = s < radars_.size()
-                          ? "RADAR_" + scenario.vehicle.radars[s].name
-                          : "CAMERA_" + scenario.vehicle.cameras[s - radars_.size()].name;
+                          ? "RADAR_" + world_.vehicle().radars[s].name
+                          : "CAMERA_" + world_.vehicle().cameras[s - radars_.size()].name;
       sensor.detection_probability = sights_[s][i].detection_probability;
       sensor.visible_fraction = sights_[s][i].visible_fraction;
       if (sensor.detection_probability > 0.0) object.is_hidden = 0;

@@ -67,14 +67,14 @@ struct Simulation::State {
         writer(w.scenario()) {
     const Scenario& scenario = w.scenario();
     start_utime = static_cast<std::int64_t>(scenario.start_utc_s) * 1000000;
-    for (std::size_t i = 0; i < scenario.vehicle.radars.size(); ++i) {
-      const RadarConfig& config = scenario.vehicle.radars[i];
+    for (std::size_t i = 0; i < w.vehicle().radars.size(); ++i) {
+      const RadarConfig& config = w.vehicle().radars[i];
       radars.push_back({RadarSimulator(w, static_cast<int>(i), s),
                         config,
                         {config.period_s, Phase(i, 0.002, config.period_s)}});
     }
-    for (std::size_t i = 0; i < scenario.vehicle.cameras.size(); ++i) {
-      const CameraConfig& config = scenario.vehicle.cameras[i];
+    for (std::size_t i = 0; i < w.vehicle().cameras.size(); ++i) {
+      const CameraConfig& config = w.vehicle().cameras[i];
       cameras.push_back({CameraSimulator(w, static_cast<int>(i), s),
                          config,
                          {config.period_s, Phase(i, 0.007, config.period_s)}});

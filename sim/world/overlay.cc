@@ -42,6 +42,7 @@ bool Read(const std::string& path, OverlayFile& file, Overlay& overlay,
   file.scenario.poles.clear();
   file.scenario.pole_rows.clear();
   file.scenario.rails.clear();
+  file.scenario.mounting.clear();
   file.scenario.attacks.clear();
   file.scenario.overlays.clear();
   if (!config::Load(path, file, problems)) return false;
@@ -86,6 +87,7 @@ bool LayOver(const std::string& path, Scenario& scenario, std::vector<std::strin
   PutBefore(scenario.poles, merged.poles);
   PutBefore(scenario.pole_rows, merged.pole_rows);
   PutBefore(scenario.rails, merged.rails);
+  PutBefore(scenario.mounting, merged.mounting);
   for (AttackSpec& attack : merged.attacks) {
     if (attack.name.empty()) attack.name = overlay.name;
   }

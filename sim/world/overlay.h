@@ -10,8 +10,8 @@ namespace v2vouch::sim {
 
 /// A YAML file laid over a scenario: an attack, a condition, denser traffic. It has the scenario's
 /// own sections and keys, all optional. A key given here replaces the scenario's; the lists
-/// `routes`, `vehicles`, `parked`, `buildings`, `poles`, `pole_rows`, `rails` and `attacks` are
-/// appended to it. Three keys are its own:
+/// `routes`, `vehicles`, `parked`, `buildings`, `poles`, `pole_rows`, `rails`, `mounting` and
+/// `attacks` are appended to it. Three keys are its own:
 struct Overlay {
   std::string name;         ///< E.g. "A5/lateral_8m"; unless given, made from the file's name.
   std::string description;  ///< One line.

@@ -128,6 +128,7 @@ struct SenderSpec {
   double bias_north_m = 0.0;
   double noise_scale = 1.0;  ///< Of all this sender's GNSS errors.
   double latency_scale = 1.0;
+  double position_age_s = 0.0;     ///< The place told is so much older than its time stamp says.
   double semi_major_m = 0.0;       ///< Reported accuracy; 0 = as in `bsm`.
   double identity_change_s = 0.0;  ///< Takes a new TemporaryID and certificate then; 0 = never.
 
@@ -138,6 +139,7 @@ struct SenderSpec {
     a.Field("bias_north_m", bias_north_m, {.at_least = -1e3, .at_most = 1e3});
     a.Field("noise_scale", noise_scale, {.at_least = 0.0, .at_most = 100.0});
     a.Field("latency_scale", latency_scale, {.at_least = 0.0, .at_most = 20.0});
+    a.Field("position_age_s", position_age_s, {.at_least = 0.0, .at_most = 2.0});
     a.Field("semi_major_m", semi_major_m, {.at_least = 0.0, .at_most = 12.7});
     a.Field("identity_change_s", identity_change_s, {.at_least = 0.0, .at_most = 1e5});
   }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "daemon/config/yaml_writer.h"
+#include "sim/world/mounting.h"
 
 namespace v2vouch::sim {
 
@@ -43,6 +44,7 @@ bool CheckReferences(const Scenario& scenario, std::vector<std::string>& problem
     problems.push_back("traffic.vehicles: `traffic.lanes` names no lane with a weight");
   }
   for (const RailSpec& rail : scenario.rails) need(rail.route, "rails");
+  CheckMounting(scenario, problems);
   for (const BuildingSpec& building : scenario.buildings) {
     if (!building.outline.empty() &&
         (building.outline.size() < 6 || building.outline.size() % 2 != 0)) {

@@ -291,7 +291,9 @@ struct Scenario {
   std::vector<PoleSpec> poles;
   std::vector<PoleRowSpec> pole_rows;
   std::vector<RailSpec> rails;
-  VehicleConfig vehicle;  ///< The ego car: body and sensors.
+  VehicleConfig
+      vehicle;  ///< The ego car: body and sensors, as the daemon's configuration has them.
+  std::vector<MountingErrorSpec> mounting;  ///< Where they sit otherwise.
   SensorsSpec sensors;
   BsmSpec bsm;
   RadioSpec radio;
@@ -322,6 +324,7 @@ struct Scenario {
     a.Field("pole_rows", pole_rows);
     a.Field("rails", rails);
     a.Field("vehicle", vehicle);
+    a.Field("mounting", mounting);
     a.Field("sensors", sensors);
     a.Field("bsm", bsm);
     a.Field("radio", radio);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "daemon/base/angle.h"
 #include "daemon/base/visit.h"
 #include "sim/world/radio_specs.h"
 
-/// Sections of a scenario file about what the ego measures: radar, camera, its own GNSS, odometry.
+/// Sections of a scenario file about what the ego measures: radar, camera, its own GNSS, odometry,
+/// and how far its sensors sit from where they should.
 namespace v2vouch::sim {
 
 enum class SensorMode {
@@ -19,6 +22,8 @@ struct SensorsSpec {
   double clutter_scale = 1.0;     ///< Of the sensors' own clutter rates.
   double ghost_scale = 1.0;       ///< Of mirror and double-bounce ghosts; 0 = none.
   double detection_scale = 1.0;   ///< Of every detection probability.
+  bool static_returns = false;    ///< With ideal points: scenery answers the radar all the same.
+  double outlier_share = 0.0;     ///< Of radar reflections, boxes and fixes: off by up to 30 sigma.
   double frame_loss = 0.0;        ///< Share of whole radar scans and pictures that never arrive.
   double radar_latency_s = 0.02;  ///< Shortest; stamp to arrival.
   double radar_latency_spread_s = 0.02;
@@ -33,6 +38,8 @@ struct SensorsSpec {
     a.Field("clutter_scale", clutter_scale, {.at_least = 0.0, .at_most = 100.0});
     a.Field("ghost_scale", ghost_scale, {.at_least = 0.0, .at_most = 10.0});
     a.Field("detection_scale", detection_scale, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("static_returns", static_returns);
+    a.Field("outlier_share", outlier_share, {.at_least = 0.0, .at_most = 1.0});
     a.Field("frame_loss", frame_loss, {.at_least = 0.0, .at_most = 1.0});
     a.Field("radar_latency_s", radar_latency_s, {.at_least = 0.0, .at_most = 1.0});
     a.Field("radar_latency_spread_s", radar_latency_spread_s, {.at_least = 0.0, .at_most = 1.0});
@@ -82,6 +89,7 @@ struct OdometrySpec {
   double rate_hz = 50.0;
   double speed_scale = 1.004;  ///< Measured speed = this times the true one, plus noise.
   double speed_sigma_mps = 0.03;
+  double y_m = 0.0;  ///< Speed is that of the body's point (0, y_m): v - y_m * yaw rate.
   double yaw_rate_bias_radps = FromDegrees(0.03);
   double yaw_rate_sigma_radps = FromDegrees(0.06);
   double accel_sigma_mps2 = 0.1;
@@ -92,10 +100,34 @@ struct OdometrySpec {
     a.Field("rate_hz", rate_hz, {.at_least = 5.0, .at_most = 200.0});
     a.Field("speed_scale", speed_scale, {.at_least = 0.8, .at_most = 1.2});
     a.Field("speed_sigma_mps", speed_sigma_mps, {.at_least = 0.0, .at_most = 5.0});
+    a.Field("y_m", y_m, {.at_least = -2.0, .at_most = 2.0});
     a.Degrees("yaw_rate_bias_degps", yaw_rate_bias_radps, {.at_least = -10.0, .at_most = 10.0});
     a.Degrees("yaw_rate_sigma_degps", yaw_rate_sigma_radps, {.at_least = 0.0, .at_most = 10.0});
     a.Field("accel_sigma_mps2", accel_sigma_mps2, {.at_least = 0.0, .at_most = 10.0});
     a.Field("latency_s", latency_s, {.at_least = 0.0, .at_most = 1.0});
+  }
+};
+
+/// How far one part of the ego car sits from where the `vehicle` section, and so the daemon's
+/// configuration, has it: added to the nominal mounting.
+struct MountingErrorSpec {
+  std::string sensor;  ///< radar_<name>, camera_<name> (in lower case) or antenna.
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;  ///< This and the last two: cameras only.
+  double yaw_rad = 0.0;
+  double pitch_rad = 0.0;
+  double roll_rad = 0.0;
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Text("sensor", sensor);
+    a.Field("x_m", x_m, {.at_least = -2.0, .at_most = 2.0});
+    a.Field("y_m", y_m, {.at_least = -2.0, .at_most = 2.0});
+    a.Field("z_m", z_m, {.at_least = -1.0, .at_most = 1.0});
+    a.Degrees("yaw_deg", yaw_rad, {.at_least = -20.0, .at_most = 20.0});
+    a.Degrees("pitch_deg", pitch_rad, {.at_least = -20.0, .at_most = 20.0});
+    a.Degrees("roll_deg", roll_rad, {.at_least = -20.0, .at_most = 20.0});
   }
 };
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "daemon/base/random.h"
+#include "sim/world/mounting.h"
 #include "sim/world/traffic.h"
 
 namespace v2vouch::sim {
@@ -72,6 +73,8 @@ Vec2 EgoTruth::PointAt(double x_m, double y_m) const {
 Vec2 EgoTruth::VelocityAt(const Vec2& point) const {
   return speed_mps * Direction(yaw_rad) + yaw_rate_radps * LeftOf(point - axle);
 }
+
+World::World(const Scenario& scenario) : scenario_(scenario), vehicle_(Mounted(scenario)) {}
 
 std::unique_ptr<World> World::Make(const Scenario& scenario, std::uint64_t seed,
                                    std::vector<std::string>& problems) {

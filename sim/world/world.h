@@ -63,15 +63,18 @@ class World {
 
   [[nodiscard]] Snapshot At(double time_s) const;
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+  /// The ego car as it really is: scenario().vehicle with its mounting errors.
+  [[nodiscard]] const VehicleConfig& vehicle() const { return vehicle_; }
   [[nodiscard]] const std::vector<Actor>& actors() const { return actors_; }
   [[nodiscard]] const std::vector<Wall>& walls() const { return walls_; }
   [[nodiscard]] const std::vector<Vec2>& poles() const { return poles_; }
   [[nodiscard]] const std::vector<Rail>& rails() const { return rails_; }
 
  private:
-  explicit World(const Scenario& scenario) : scenario_(scenario) {}
+  explicit World(const Scenario& scenario);
 
   Scenario scenario_;
+  VehicleConfig vehicle_;
   Trajectory ego_;  // Of the centre of the ego's footprint.
   std::vector<Actor> actors_;
   std::vector<Wall> walls_;

@@ -66,7 +66,10 @@ TEST_P(ShippedScenario, EffectiveTextReadsBackAsTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScenario,
                          testing::Values("left_turn", "urban", "highway", "occlusion", "smoke",
-                                         "campaign_urban", "campaign_highway", "ghosts"));
+                                         "campaign_urban", "campaign_highway", "ghosts",
+                                         "calibration_drive", "calibration_straight",
+                                         "calibration_parked", "calibration_same_bearing",
+                                         "calibration_constant_speed", "calibration_one_remote"));
 
 TEST(LoadScenario, ReportsEveryProblemWithItsPlace) {
   const auto path = std::filesystem::temp_directory_path() / "v2vouch_bad_scenario.yaml";

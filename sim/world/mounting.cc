@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/world/mounting.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace v2vouch::sim {
+namespace {
+
+std::string Lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+RadarConfig* FindRadar(VehicleConfig& vehicle, const std::string& sensor) {
+  for (RadarConfig& radar : vehicle.radars) {
+    if (sensor == "radar_" + Lower(radar.name)) return &radar;
+  }
+  return nullptr;
+}
+
+CameraConfig* FindCamera(VehicleConfig& vehicle, const std::string& sensor) {
+  for (CameraConfig& camera : vehicle.cameras) {
+    if (sensor == "camera_" + Lower(camera.name)) return &camera;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+VehicleConfig Mounted(const Scenario& scenario) {
+  VehicleConfig vehicle = scenario.vehicle;
+  for (const MountingErrorSpec& error : scenario.mounting) {
+    if (RadarConfig* radar = FindRadar(vehicle, error.sensor)) {
+      radar->x_m += error.x_m;
+      radar->y_m += error.y_m;
+      radar->yaw_rad += error.yaw_rad;
+    } else if (CameraConfig* camera = FindCamera(vehicle, error.sensor)) {
+      camera->x_m += error.x_m;
+      camera->y_m += error.y_m;
+      camera->z_m += error.z_m;
+      camera->yaw_rad += error.yaw_rad;
+      camera->pitch_rad += error.pitch_rad;
+      camera->roll_rad += error.roll_rad;
+    } else if (error.sensor == "antenna") {
+      vehicle.antenna_x_m += error.x_m;
+      vehicle.antenna_y_m += error.y_m;
+    }
+  }
+  return vehicle;
+}
+
+void CheckMounting(const Scenario& scenario, std::vector<std::string>& problems) {
+  VehicleConfig vehicle = scenario.vehicle;
+  for (std::size_t i = 0; i < scenario.mounting.size(); ++i) {
+    const MountingErrorSpec& error = scenario.mounting[i];
+    const std::string who = "mounting[" + std::to_string(i) + "]";
+    if (FindCamera(vehicle, error.sensor) != nullptr) continue;
+    const bool is_radar = FindRadar(vehicle, error.sensor) != nullptr;
+    if (!is_radar && error.sensor != "antenna") {
+      problems.push_back(who + ".sensor: '" + error.sensor +
+                         "' is neither antenna nor a radar_<name> or camera_<name> of the vehicle");
+      continue;
+    }
+    if (error.z_m != 0.0 || error.pitch_rad != 0.0 || error.roll_rad != 0.0 ||
+        (!is_radar && error.yaw_rad != 0.0)) {
+      problems.push_back(who + ": " + error.sensor +
+                         (is_radar ? " has x_m, y_m and yaw_deg only" : " has x_m and y_m only"));
+    }
+  }
+}
+
+}  // namespace v2vouch::sim
