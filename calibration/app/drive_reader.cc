@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/app/drive_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "daemon/base/sha256.h"
+#include "daemon/io/event_log.h"
+#include "daemon/wire/input_decoder.h"
+
+namespace v2vouch {
+namespace {
+
+bool HashFile(const std::string& path, std::string& hex) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             &std::fclose);
+  if (file == nullptr) return false;
+  Sha256 sha;
+  std::array<std::uint8_t, 1 << 16> buffer;
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
+    sha.Add({buffer.data(), n});
+  }
+  hex = sha.Hex();
+  return std::ferror(file.get()) == 0;
+}
+
+void Keep(Input& input, DriveLog& own) {
+  if (auto* scan = std::get_if<RadarScan>(&input)) {
+    own.scans.push_back(std::move(*scan));
+  } else if (auto* picture = std::get_if<CameraDetections>(&input)) {
+    own.pictures.push_back(std::move(*picture));
+  } else if (const auto* motion = std::get_if<EgoMotion>(&input)) {
+    own.motion.push_back(*motion);
+  } else if (const auto* fix = std::get_if<GnssFix>(&input)) {
+    own.fixes.push_back(*fix);
+  }
+}
+
+}  // namespace
+
+bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config, Drive& drive,
+               std::string& error, const std::function<void(double)>& progress) {
+  const wire::InputDecoder decoder(config.perception.vehicle, config.lcm.channels);
+  ReasonCounts dropped{};
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const auto reader = LogReader::Open(logs[i], error);
+    if (reader == nullptr) return false;
+    LogEvent event;
+    while (reader->Next(event)) {
+      if (++drive.events % 4096 == 0 && progress) {
+        progress((static_cast<double>(i) + reader->progress()) / static_cast<double>(logs.size()));
+      }
+      const auto channel = decoder.Find(event.channel);
+      if (!channel || decoder.channels()[*channel].kind == wire::InputKind::kBsm) continue;
+      auto decoded = decoder.Decode(*channel, event.bytes, event.received, dropped);
+      if (!decoded) {
+        ++drive.refused;
+      } else if (auto* input = std::get_if<Input>(&*decoded)) {
+        drive.newest = std::max(drive.newest, HeaderOf(*input).stamp);
+        Keep(*input, drive.own);
+      }
+    }
+    drive.damaged += reader->damaged();
+    if (!HashFile(logs[i], drive.log_sha256.emplace_back())) {
+      error = logs[i] + ": cannot be read a second time";
+      return false;
+    }
+  }
+  const auto by_stamp = [](auto& messages) {
+    std::ranges::stable_sort(messages, {}, [](const auto& m) { return m.stamp; });
+  };
+  by_stamp(drive.own.motion);
+  by_stamp(drive.own.fixes);
+  by_stamp(drive.own.scans);
+  by_stamp(drive.own.pictures);
+  if (drive.own.motion.empty()) {
+    error = logs.front() + ": no " + config.lcm.channels.ego_motion + " of this vehicle in it";
+    return false;
+  }
+  return true;
+}
+
+}  // namespace v2vouch

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "daemon/data/input.h"
+
+namespace v2vouch {
+
+/// What stage A of a calibration reads of a drive: the car's own sensors, each in order of its
+/// stamps. There is no place for a BSM in it: what a stranger says can never move an extrinsic.
+struct DriveLog {
+  std::vector<EgoMotion> motion;
+  std::vector<GnssFix> fixes;
+  std::vector<RadarScan> scans;
+  std::vector<CameraDetections> pictures;
+};
+
+}  // namespace v2vouch

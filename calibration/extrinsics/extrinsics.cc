@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/extrinsics/extrinsics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "calibration/extrinsics/information.h"
+#include "calibration/extrinsics/verdicts.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr double kMoving_mps = 3.0;
+// A group whose mean squared whitened residual is beyond these does not fit its model. Below: the
+// stated noise is far too large, which misleads no one but wastes information.
+constexpr double kMostChiSquare = 2.0;
+
+struct Pass {
+  DopplerSelection doppler;
+  std::size_t every_window;  // Thinned: the first passes only have to come near.
+  double pairing_gate_rad;
+  bool doppler_loss;
+  double tolerance;
+  const char* name;
+};
+
+const std::array<Pass, 3> kPasses = {{
+    {{.max_per_radar = 8'000, .slack_rad = FromDegrees(3.0), .slack_speed = 0.03},
+     6,
+     0.06,
+     true,
+     1e-6,
+     "first solution"},
+    {{.max_per_radar = 15'000, .slack_rad = FromDegrees(0.1), .slack_speed = 0.002},
+     4,
+     0.025,
+     false,
+     1e-6,
+     "second solution"},
+    {{.max_per_radar = 60'000}, 1, 0.025, false, 2e-8, "last solution"},
+}};
+
+Excitation ExcitationOf(const EgoTrack& ego, const DriveData& data) {
+  Excitation e;
+  if (ego.samples().empty()) return e;
+  e.duration_s = ToSeconds(ego.samples().back().stamp - ego.samples().front().stamp);
+  double n = 0.0, v = 0.0, vv = 0.0, ww = 0.0;
+  std::complex<double> heading;
+  for (const EgoTrack::Sample& sample : ego.samples()) {
+    if (sample.speed_mps < kMoving_mps) continue;
+    n += 1.0;
+    v += sample.speed_mps;
+    vv += sample.speed_mps * sample.speed_mps;
+    ww += sample.yaw_rate_radps * sample.yaw_rate_radps;
+    heading += std::polar(1.0, sample.yaw_rad);
+  }
+  if (n > 0.0) {
+    e.moving_s = e.duration_s * n / static_cast<double>(ego.samples().size());
+    e.speed_rms_mps = std::sqrt(std::max(0.0, vv / n - v * v / (n * n)));
+    e.yaw_rate_rms_radps = std::sqrt(ww / n);
+    e.heading_resultant = std::abs(heading) / n;
+  }
+  e.static_returns = static_cast<int>(data.returns.size());
+  double m = 0.0, b = 0.0, bb = 0.0, d = 0.0, dd = 0.0;
+  for (const TargetWindow& window : data.windows) {
+    if (window.camera_looks.empty()) continue;
+    const double bearing = std::atan2(window.state[1], window.state[0]);
+    const double inverse = 1.0 / std::max(1.0, std::hypot(window.state[0], window.state[1]));
+    m += 1.0;
+    b += bearing;
+    bb += bearing * bearing;
+    d += inverse;
+    dd += inverse * inverse;
+  }
+  e.target_windows = static_cast<int>(m);
+  if (m > 0.0) {
+    e.bearing_spread_rad = std::sqrt(std::max(0.0, bb / m - b * b / (m * m)));
+    e.inverse_range_spread_pm = std::sqrt(std::max(0.0, dd / m - d * d / (m * m)));
+  }
+  return e;
+}
+
+// The measurements that weigh most in an estimate.
+std::string DeterminedBy(const MountingInformation& information,
+                         const std::vector<std::string>& groups, int parameter) {
+  Eigen::Index best = 0;
+  information.shares.col(parameter).maxCoeff(&best);
+  return groups[static_cast<std::size_t>(best)];
+}
+
+bool Fits(const std::string& sensor, const std::vector<GroupFit>& groups) {
+  return std::ranges::none_of(groups, [&](const GroupFit& group) {
+    return group.name.starts_with(sensor + ".") && group.robust_chi_square > kMostChiSquare;
+  });
+}
+
+}  // namespace
+
+ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& vehicle,
+                                     const ExtrinsicsOptions& options,
+                                     const std::function<void(double, const char*)>& progress) {
+  const auto tell = [&](double share, const char* what) {
+    if (progress) progress(share, what);
+  };
+  MountingParameters parameters(vehicle, options.priors);
+  ExtrinsicsResult result(parameters);
+  const EgoTrack ego(log.motion);
+  if (ego.samples().size() < 50) {
+    result.problems.push_back("no EGO_MOTION to calibrate from: under 50 samples");
+    return result;
+  }
+  ProblemOptions problem_options;
+  if (options.point_targets) problem_options.wander_m = problem_options.offset_m = 0.0;
+
+  DriveData data{.log = &log, .ego = &ego, .vehicle = &vehicle, .returns = {}, .windows = {}};
+  std::unique_ptr<DriveProblem> problem;
+  for (std::size_t i = 0; i < kPasses.size(); ++i) {
+    const Pass& pass = kPasses[i];
+    const double from = 0.05 + 0.3 * static_cast<double>(i);
+    tell(from, pass.name);
+    data.returns = SelectStaticReturns(log, ego, vehicle, parameters, pass.doppler);
+    const auto chains = ChainMovingReturns(log, ego, vehicle, parameters);
+    data.chains = chains.size();
+    for (int camera = 0; i == 0 && camera < parameters.cameras(); ++camera) {
+      AimCamera(log, ego, vehicle, camera, chains, parameters);
+    }
+    data.windows = PairTargets(log, ego, vehicle, parameters, chains, pass.pairing_gate_rad);
+    if (pass.every_window > 1) {
+      std::size_t n = 0;
+      std::erase_if(data.windows,
+                    [&](const TargetWindow&) { return n++ % pass.every_window != 0; });
+    }
+    problem_options.doppler_loss = pass.doppler_loss;
+    problem_options.tolerance = pass.tolerance;
+    problem = std::make_unique<DriveProblem>(data, parameters, problem_options);
+    const bool is_usable = problem->Solve(
+        [&](int iteration) { tell(from + 0.3 * std::min(1.0, iteration / 15.0), pass.name); });
+    if (!is_usable) {
+      result.problems.push_back(std::string("no usable ") + pass.name);
+      return result;
+    }
+  }
+  tell(0.95, "observability");
+  result.pictures = DrawResiduals(data, *problem, parameters);
+  result.excitation = ExcitationOf(ego, data);
+  const MountingInformation information = Reduce(*problem, parameters, true);
+  const MountingInformation gaussian = Reduce(*problem, parameters, false);
+  if (information.S.size() == 0 || gaussian.S.size() == 0) {
+    result.problems.push_back("the equations have no unique solution");
+    return result;
+  }
+  for (std::size_t g = 0; g < problem->groups().size(); ++g) {
+    result.groups.push_back({problem->groups()[g], information.fits[g].equations,
+                             information.fits[g].chi_square_per_equation,
+                             gaussian.fits[g].robust_chi_square,
+                             information.inflation(static_cast<Eigen::Index>(g))});
+  }
+  const HeldPosterior held = HoldWeakDirections(information.S, parameters);
+  const HeldPosterior bound = HoldWeakDirections(gaussian.S, parameters);
+  result.weak = held.weak;
+  const Eigen::VectorXd& factor = information.std_factor;
+  result.covariance = factor.asDiagonal() * held.covariance * factor.asDiagonal();
+  bool knows_something = false;
+  for (int i = 0; i < parameters.size(); ++i) {
+    const auto& d = parameters.descriptions()[static_cast<std::size_t>(i)];
+    MountingEstimate estimate;
+    estimate.name = d.name;
+    const double data_std = held.data_std(i) * factor(i);
+    double value = held.values[static_cast<std::size_t>(i)];
+    estimate.verdict = VerdictOf(parameters.values()[static_cast<std::size_t>(i)], data_std,
+                                 d.prior, d.prior_std, Fits(d.sensor, result.groups));
+    if (d.is_anchor) estimate.verdict = CalibrationVerdict::kPrior;
+    if (estimate.verdict == CalibrationVerdict::kPrior) value = d.prior;
+    parameters.values()[static_cast<std::size_t>(i)] = value;
+    estimate.value = value * d.to_unit;
+    estimate.prior = d.prior * d.to_unit;
+    estimate.prior_std = d.prior_std * d.to_unit;
+    estimate.std = std::sqrt(result.covariance(i, i)) * d.to_unit;
+    if (estimate.verdict == CalibrationVerdict::kPrior) estimate.std = estimate.prior_std;
+    estimate.crlb = bound.crlb(i) * d.to_unit;
+    estimate.data_std = data_std * d.to_unit;
+    estimate.determined_by = DeterminedBy(information, problem->groups(), i);
+    estimate.block_std = information.block_std(i) * d.to_unit;
+    for (std::size_t g = 0; g < problem->groups().size(); ++g) {
+      const double share = information.shares(static_cast<Eigen::Index>(g), i);
+      if (share >= 0.01) estimate.shares.emplace_back(problem->groups()[g], share);
+    }
+    std::ranges::stable_sort(estimate.shares, std::greater{},
+                             &std::pair<std::string, double>::second);
+    estimate.hint = HintFor(d.name, estimate.verdict, result.excitation);
+    if (estimate.verdict == CalibrationVerdict::kAtBound) {
+      result.problems.push_back(d.name + " is farther from the vehicle file than 3 sigma of it");
+    } else if (estimate.verdict == CalibrationVerdict::kRejected) {
+      result.problems.push_back(d.name + ": the measurements of " + d.sensor +
+                                " do not fit the model");
+    } else if (estimate.verdict != CalibrationVerdict::kPrior) {
+      knows_something = true;
+    }
+    result.parameters.push_back(std::move(estimate));
+  }
+  if (!knows_something) {
+    result.problems.push_back("nothing could be estimated: every parameter stays at its prior");
+  }
+  result.mounting = parameters;
+  result.accepted = result.problems.empty();
+  tell(1.0, "done");
+  return result;
+}
+
+}  // namespace v2vouch
