@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 
 #include "calibration/extrinsics/drive_costs.h"
@@ -62,10 +63,26 @@ struct DriveProblem::State {
     return ToSeconds(t - data.ego->samples().front().stamp);
   }
 
+  // The loss of a group's equations, scaled where its noise is correlated.
+  ceres::LossFunction* Weighed(ceres::LossFunction* loss, int group) {
+    const double inflation = InflationOf(group);
+    if (inflation <= 1.0) return loss;
+    auto& weighed = weighed_losses[{group, loss}];
+    if (!weighed) {
+      weighed =
+          std::make_unique<ceres::ScaledLoss>(loss, 1.0 / inflation, ceres::DO_NOT_TAKE_OWNERSHIP);
+    }
+    return weighed.get();
+  }
+  [[nodiscard]] double InflationOf(int group) const {
+    const auto at = options.inflation.find(groups[static_cast<std::size_t>(group)]);
+    return at == options.inflation.end() ? 1.0 : at->second;
+  }
+
   template <class... Blocks>
   void Add(ceres::CostFunction* cost, ceres::LossFunction* loss, int group, double time_s,
            Blocks*... unknowns) {
-    ids.push_back(problem->AddResidualBlock(cost, loss, unknowns...));
+    ids.push_back(problem->AddResidualBlock(cost, Weighed(loss, group), unknowns...));
     equations.push_back({group, time_s});
   }
 
@@ -138,6 +155,8 @@ struct DriveProblem::State {
   MountingParameters& parameters;
   ProblemOptions options;
   ceres::CauchyLoss cauchy;
+  std::map<std::pair<int, ceres::LossFunction*>, std::unique_ptr<ceres::LossFunction>>
+      weighed_losses;
   std::unique_ptr<ceres::Problem> problem;
   std::vector<std::optional<std::array<double, 2>>> epochs;   // Speed, yaw rate.
   std::vector<std::array<double, 4>> targets;                 // Place, velocity.
@@ -347,6 +366,7 @@ bool DriveProblem::Solve(const std::function<void(int)>& progress) {
 const std::vector<std::array<double, 4>>& DriveProblem::targets() const { return state_->targets; }
 const std::vector<std::string>& DriveProblem::groups() const { return state_->groups; }
 const std::vector<Equation>& DriveProblem::equations() const { return state_->equations; }
+double DriveProblem::weighed_inflation(int group) const { return state_->InflationOf(group); }
 int DriveProblem::prior_equations() const { return state_->priors; }
 
 DriveProblem::Linear DriveProblem::Linearised(bool with_loss) const {

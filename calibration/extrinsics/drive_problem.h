@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,6 +36,9 @@ struct ProblemOptions {
   /// targets.
   double wander_m = 0.4;
   double offset_m = 0.4;
+  /// Groups whose noise is correlated: by what their variance in blocks exceeds white noise
+  /// (MountingInformation::inflation). Their equations weigh so much less.
+  std::map<std::string, double> inflation;
   int iterations = 40;
   double tolerance = 2e-8;  ///< Of the cost, relative, from one iteration to the next.
 };
@@ -69,6 +73,8 @@ class DriveProblem {
   [[nodiscard]] const std::vector<std::string>& groups() const;
   [[nodiscard]] const std::vector<Equation>& equations() const;  ///< Priors first.
   [[nodiscard]] int prior_equations() const;
+  /// By how much a group's variance was taken for larger than stated.
+  [[nodiscard]] double weighed_inflation(int group) const;
 
   /// The whitened equations at the current values: row i of the Jacobian belongs to equations()[i];
   /// columns are the parameters in their order, then everything else.

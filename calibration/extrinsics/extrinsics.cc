@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <map>
+#include <memory>
 
 #include "calibration/extrinsics/information.h"
 #include "calibration/extrinsics/verdicts.h"
@@ -23,23 +25,35 @@ struct Pass {
   double pairing_gate_rad;
   bool doppler_loss;
   double tolerance;
+  double from, to;  // Of all the work.
   const char* name;
 };
 
 const std::array<Pass, 3> kPasses = {{
-    {{.max_per_radar = 8'000, .slack_rad = FromDegrees(3.0), .slack_speed = 0.03},
-     6,
-     0.06,
-     true,
-     1e-6,
-     "first solution"},
-    {{.max_per_radar = 15'000, .slack_rad = FromDegrees(0.1), .slack_speed = 0.002},
-     4,
-     0.025,
-     false,
-     1e-6,
-     "second solution"},
-    {{.max_per_radar = 60'000}, 1, 0.025, false, 2e-8, "last solution"},
+    {.doppler = {.max_per_radar = 8'000, .slack_rad = FromDegrees(3.0), .slack_speed = 0.03},
+     .every_window = 6,
+     .pairing_gate_rad = 0.06,
+     .doppler_loss = true,
+     .tolerance = 1e-6,
+     .from = 0.05,
+     .to = 0.15,
+     .name = "first solution"},
+    {.doppler = {.max_per_radar = 15'000, .slack_rad = FromDegrees(0.1), .slack_speed = 0.002},
+     .every_window = 4,
+     .pairing_gate_rad = 0.025,
+     .doppler_loss = false,
+     .tolerance = 1e-6,
+     .from = 0.15,
+     .to = 0.35,
+     .name = "second solution"},
+    {.doppler = {.max_per_radar = 60'000},
+     .every_window = 1,
+     .pairing_gate_rad = 0.025,
+     .doppler_loss = false,
+     .tolerance = 2e-8,
+     .from = 0.35,
+     .to = 0.8,
+     .name = "last solution"},
 }};
 
 Excitation ExcitationOf(const EgoTrack& ego, const DriveData& data) {
@@ -96,6 +110,31 @@ bool Fits(const std::string& sensor, const std::vector<GroupFit>& groups) {
   });
 }
 
+// What a pass works on, chosen with what the pass before it learnt.
+void Select(const Pass& pass, bool is_first, MountingParameters& parameters, DriveData& data) {
+  data.returns = SelectStaticReturns(*data.log, *data.ego, *data.vehicle, parameters, pass.doppler);
+  const auto chains = ChainMovingReturns(*data.log, *data.ego, *data.vehicle, parameters);
+  data.chains = chains.size();
+  for (int camera = 0; is_first && camera < parameters.cameras(); ++camera) {
+    AimCamera(*data.log, *data.ego, *data.vehicle, camera, chains, parameters);
+  }
+  data.windows =
+      PairTargets(*data.log, *data.ego, *data.vehicle, parameters, chains, pass.pairing_gate_rad);
+  std::size_t n = 0;
+  std::erase_if(data.windows, [&](const TargetWindow&) { return n++ % pass.every_window != 0; });
+}
+
+std::map<std::string, double> InflationOf(const DriveProblem& problem,
+                                          const MountingParameters& parameters) {
+  std::map<std::string, double> inflation;
+  const MountingInformation information = Reduce(problem, parameters, true);
+  for (std::size_t g = 0; information.S.size() > 0 && g < problem.groups().size(); ++g) {
+    const double of_group = information.inflation(static_cast<Eigen::Index>(g));
+    if (of_group > 1.0) inflation[problem.groups()[g]] = of_group;
+  }
+  return inflation;
+}
+
 }  // namespace
 
 ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& vehicle,
@@ -116,32 +155,25 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
 
   DriveData data{.log = &log, .ego = &ego, .vehicle = &vehicle, .returns = {}, .windows = {}};
   std::unique_ptr<DriveProblem> problem;
-  for (std::size_t i = 0; i < kPasses.size(); ++i) {
-    const Pass& pass = kPasses[i];
-    const double from = 0.05 + 0.3 * static_cast<double>(i);
-    tell(from, pass.name);
-    data.returns = SelectStaticReturns(log, ego, vehicle, parameters, pass.doppler);
-    const auto chains = ChainMovingReturns(log, ego, vehicle, parameters);
-    data.chains = chains.size();
-    for (int camera = 0; i == 0 && camera < parameters.cameras(); ++camera) {
-      AimCamera(log, ego, vehicle, camera, chains, parameters);
-    }
-    data.windows = PairTargets(log, ego, vehicle, parameters, chains, pass.pairing_gate_rad);
-    if (pass.every_window > 1) {
-      std::size_t n = 0;
-      std::erase_if(data.windows,
-                    [&](const TargetWindow&) { return n++ % pass.every_window != 0; });
-    }
-    problem_options.doppler_loss = pass.doppler_loss;
-    problem_options.tolerance = pass.tolerance;
+  const auto solve = [&](double from, double to, const char* name) {
     problem = std::make_unique<DriveProblem>(data, parameters, problem_options);
     const bool is_usable = problem->Solve(
-        [&](int iteration) { tell(from + 0.3 * std::min(1.0, iteration / 15.0), pass.name); });
-    if (!is_usable) {
-      result.problems.push_back(std::string("no usable ") + pass.name);
-      return result;
-    }
+        [&](int iteration) { tell(from + (to - from) * std::min(1.0, iteration / 15.0), name); });
+    if (!is_usable) result.problems.push_back(std::string("no usable ") + name);
+    return is_usable;
+  };
+  for (std::size_t i = 0; i < kPasses.size(); ++i) {
+    const Pass& pass = kPasses[i];
+    tell(pass.from, pass.name);
+    Select(pass, i == 0, parameters, data);
+    problem_options.doppler_loss = pass.doppler_loss;
+    problem_options.tolerance = pass.tolerance;
+    if (!solve(pass.from, pass.to, pass.name)) return result;
   }
+  // Correlated measurements weigh what they are worth, or the prior would be outvoted by
+  // repetition.
+  problem_options.inflation = InflationOf(*problem, parameters);
+  if (!problem_options.inflation.empty() && !solve(0.8, 0.95, "weighed solution")) return result;
   tell(0.95, "observability");
   result.pictures = DrawResiduals(data, *problem, parameters);
   result.excitation = ExcitationOf(ego, data);

@@ -76,7 +76,8 @@ struct ExtrinsicsResult {
 
 /// Stage A: mounting of radars and cameras, antenna, heading bias, speed scale, from the car's own
 /// sensors. Three passes: everything robust behind wide gates; then gates and pairs made again with
-/// what was learnt, Doppler hard-gated and Gaussian, the rest robust; then once more.
+/// what was learnt, Doppler hard-gated and Gaussian, the rest robust; then once more with all data,
+/// and again where some of it turned out to be correlated.
 /// @param progress share of the work done, and what is being done.
 ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& vehicle,
                                      const ExtrinsicsOptions& options,

@@ -151,13 +151,17 @@ MountingInformation Reduce(const DriveProblem& problem, const MountingParameters
       information.inflation(static_cast<Eigen::Index>(g)) = Inflation(times[g], residuals[g]);
     }
   }
+  Eigen::VectorXd beyond = information.inflation;  // What the weights do not hold yet.
+  for (Eigen::Index g = 0; g < beyond.size(); ++g) {
+    beyond(g) = std::max(1.0, beyond(g) / problem.weighed_inflation(static_cast<int>(g)));
+  }
   const Eigen::MatrixXd centred = block_pull.rowwise() - block_pull.colwise().mean();
   information.block_std =
       centred.colwise().norm().transpose() * std::sqrt(kJackknifeBlocks / (kJackknifeBlocks - 1.0));
   information.std_factor = Eigen::VectorXd::Ones(np);
   for (int i = 0; i < np; ++i) {
     const double white = information.shares.col(i).sum();
-    const double grown = information.shares.col(i).dot(information.inflation);
+    const double grown = information.shares.col(i).dot(beyond);
     if (white > 0.0) {
       information.std_factor(i) = std::sqrt(grown / white);
       information.shares.col(i) /= white;

@@ -25,7 +25,7 @@ struct MountingInformation {
   /// By what each group's noise exceeds white noise in blocks of 2 to 30 s: variance of block means
   /// over what independent residuals would give. 1 = white.
   Eigen::VectorXd inflation;
-  /// By what each parameter's standard deviation grows for it.
+  /// By what each parameter's standard deviation grows for what of it the weights do not hold.
   Eigen::VectorXd std_factor;
 
   /// Standard deviation of each parameter as the drive's own blocks of a twentieth scatter: to

@@ -81,7 +81,7 @@ std::vector<StaticReturn> SelectStaticReturns(const DriveLog& log, const EgoTrac
     const auto radar = static_cast<std::size_t>(scan.radar);
     const RadarConfig& config = vehicle.radars[radar];
     const auto epoch = ego.Nearest(scan.stamp);
-    if (config.output != RadarOutput::kReflections || !epoch) continue;
+    if (!epoch) continue;
     const EgoTrack::Sample& sample = ego.samples()[*epoch];
     if (sample.speed_mps < selection.min_speed_mps) continue;
     const auto motion = MotionAt(sample, parameters.Ego());

@@ -56,7 +56,8 @@ struct DopplerSelection {
 };
 
 /// The returns that fit a standing world as seen by a car that moves as its odometry says and whose
-/// mounting is `parameters`. Reflections only: what a radar tracks by itself it may have smoothed.
+/// mounting is `parameters`. Objects of a radar that tracks by itself count like reflections; that
+/// their noise has been smoothed shows in the blocks (MountingInformation::inflation).
 std::vector<StaticReturn> SelectStaticReturns(const DriveLog& log, const EgoTrack& ego,
                                               const VehicleConfig& vehicle,
                                               const MountingParameters& parameters,
