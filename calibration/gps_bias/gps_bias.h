@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <optional>
-#include <vector>
 
 #include "calibration/gps_bias/bias_problem.h"
 #include "calibration/gps_bias/gps_bias_config.h"
@@ -11,49 +11,34 @@
 
 namespace v2vouch {
 
-/// Why a sender's bias is not used.
-enum class BiasVerdict : std::int8_t {
-  kUsed = 0,
-  kTooFew,       ///< Residuals; nothing is said yet.
-  kTooLarge,     ///< Beyond max_bias_m: no bias of a receiver.
-  kChanges,      ///< More than max_change_m within the window, or unlike any receiver's noise.
-  kLeadsCommon,  ///< The common part hangs on this sender alone.
-};
-
 /// GPS bias per sender and common to all, by Ceres over a sliding window of sensor-confirmed
-/// residuals (bias_problem.h). Solved at whole seconds of message time; each solve depends on the
-/// window's residuals alone, so that how often AdvanceTo() is called changes nothing. Whoever is in
-/// quarantine has no estimate and no part in the common one: the worst is put there first, then
-/// the rest is solved again.
+/// residuals (bias_problem.h). Solved for every whole second of message time; each solve depends on
+/// the window's residuals alone, so that how often AdvanceTo() is called changes nothing. Whoever
+/// is in quarantine has no estimate and no part in the common one: the worst is put there first,
+/// then the rest is solved again, a bounded number of times.
 class GpsBias final : public BiasEstimator {
  public:
+  using Sender = BiasReport::Sender;
+
   explicit GpsBias(const GpsBiasConfig& config) : config_(config), window_(config) {}
 
   void Observe(const BiasResidual& residual) override { window_.Add(residual); }
   void AdvanceTo(Timestamp settled) override;
-  [[nodiscard]] std::optional<BiasEstimate> Estimate(SenderId sender) const override;
-
-  struct Sender {
-    SenderId sender = 0;
-    BiasVerdict verdict = BiasVerdict::kTooFew;
-    BiasEstimate bias{};
-    double change_m = 0.0;
-  };
-  /// Of the last solve, in order of the senders' ids; quarantined ones included.
-  [[nodiscard]] const std::vector<Sender>& senders() const { return solved_; }
-  /// What all are off by. nullopt: too few senders.
-  [[nodiscard]] const std::optional<BiasEstimate>& common() const { return common_; }
-  [[nodiscard]] std::optional<Timestamp> solved_at() const { return solved_at_; }
+  /// By the newest solve at least estimate_age_s before `at`.
+  [[nodiscard]] std::optional<BiasEstimate> Estimate(SenderId sender, Timestamp at) const override;
+  [[nodiscard]] const BiasReport& report() const override {
+    return solves_.empty() ? nothing_ : solves_.back();
+  }
+  void Restart() override;
 
  private:
-  void Solve(Timestamp second);
+  [[nodiscard]] BiasReport Solve(Timestamp second) const;
   [[nodiscard]] BiasVerdict Judge(const SenderSolution& one, std::size_t senders) const;
 
   GpsBiasConfig config_;
   ResidualWindow window_;
-  std::vector<Sender> solved_;
-  std::optional<BiasEstimate> common_;
-  std::optional<Timestamp> solved_at_;
+  std::deque<BiasReport> solves_;  // Of the last seconds.
+  BiasReport nothing_;
 };
 
 }  // namespace v2vouch

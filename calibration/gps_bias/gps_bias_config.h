@@ -7,10 +7,14 @@ namespace v2vouch {
 
 /// GPS bias of senders, per sender and common to all.
 struct GpsBiasConfig {
+  bool enabled = true;  ///< false: every sender keeps the prior.
+  /// An estimate is used by messages at least so much younger than its data: more than the replay
+  /// buffer and what a message may be ahead of the sensors, so that all orders of arrival agree.
+  double estimate_age_s = 2.0;
   double window_s = 60.0;        ///< Residuals older than this are forgotten.
   double knot_s = 10.0;          ///< Of the wandering part, which is linear between knots.
   int min_residuals = 10;        ///< Of a sender in the window; below, nothing is said of it.
-  int max_senders = 64;          ///< The table's size; whoever was silent longest makes room.
+  int max_senders = 32;          ///< The table's size; whoever was silent longest makes room.
   double common_sigma_m = 1.5;   ///< What all are off by: the ego's own error, per axis.
   double sender_sigma_m = 1.5;   ///< A sender's own constant part, per axis.
   double wander_sigma_m = 0.5;   ///< A sender's wandering part: first-order Gauss-Markov ...
@@ -25,6 +29,8 @@ struct GpsBiasConfig {
 
   template <class Archive>
   void Visit(Archive& a) {
+    a.Field("enabled", enabled);
+    a.Field("estimate_age_s", estimate_age_s, {.at_least = 0.5, .at_most = 10.0});
     a.Field("window_s", window_s, {.at_least = 5.0, .at_most = 300.0});
     a.Field("knot_s", knot_s, {.at_least = 1.0, .at_most = 60.0});
     a.Field("min_residuals", min_residuals, {.at_least = 2, .at_most = 1000});

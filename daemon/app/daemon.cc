@@ -30,7 +30,7 @@ class Daemon {
  public:
   Daemon(const DaemonConfig& config, ObjectDetector* detector)
       : config_(config),
-        engine_(config, std::make_unique<NullBiasEstimator>()),
+        engine_(config),
         queue_(static_cast<std::size_t>(config.lcm.own_queue),
                static_cast<std::size_t>(config.lcm.bsm_queue)),
         detect_(engine_.decoder(), detector, queue_) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/gps_bias/gps_bias_config.h"
 #include "daemon/assembly/calibration_file.h"
 #include "daemon/base/visit.h"
 #include "daemon/pipeline/perception_config.h"
@@ -34,6 +35,7 @@ struct LcmConfig {
 struct DaemonConfig {
   std::string calibration;  ///< File of calibrated values, from this file's folder; "" = none.
   PerceptionConfig perception;
+  GpsBiasConfig gps_bias;
   LcmConfig lcm;
   /// What `calibration` held; its values are in perception.vehicle already.
   std::optional<CalibrationFile> calibrated;
@@ -42,6 +44,7 @@ struct DaemonConfig {
   void Visit(Archive& a) {
     a.Text("calibration", calibration);
     perception.Visit(a);
+    a.Field("gps_bias", gps_bias);
     a.Field("lcm", lcm);
   }
 };

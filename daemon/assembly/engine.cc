@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/assembly/engine.h"
 
-#include <utility>
+#include <memory>
 
+#include "calibration/gps_bias/gps_bias.h"
 #include "daemon/assembly/calibration_in_force.h"
 #include "daemon/wire/output_encoder.h"
 
@@ -17,12 +18,17 @@ bool RefusesTheInput(Reason reason) {
          reason != Reason::kSenderNumerics && reason != Reason::kTrackTableFull;
 }
 
+std::unique_ptr<BiasEstimator> MakeBiasEstimator(const GpsBiasConfig& config) {
+  if (!config.enabled) return std::make_unique<NullBiasEstimator>();
+  return std::make_unique<GpsBias>(config);
+}
+
 }  // namespace
 
-Engine::Engine(const DaemonConfig& config, std::unique_ptr<BiasEstimator> bias)
+Engine::Engine(const DaemonConfig& config)
     : config_(config),
       decoder_(config.perception.vehicle, config.lcm.channels),
-      perception_(config.perception, std::move(bias)),
+      perception_(config.perception, MakeBiasEstimator(config.gps_bias)),
       watch_(decoder_.channels()) {
   status_.version = V2VOUCH_VERSION;
   status_.calibration = CalibrationTitle(config);
@@ -136,6 +142,7 @@ void Engine::PublishStatus(Outbox& outbox) {
   status_.latencies = figures_.latencies;
   status_.v2v_senders = perception_.sender_count();
   status_.ego_gnss_suspect = perception_.ego_gnss_suspect();
+  status_.gps_bias = perception_.bias_report();
   status_.digest_inputs = watch_.accepted();
   status_.digest_local = digest_local_.Hex();
   status_.digest_priority = digest_priority_.Hex();

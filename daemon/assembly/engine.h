@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,7 +11,6 @@
 #include "daemon/assembly/daemon_config.h"
 #include "daemon/assembly/input_watch.h"
 #include "daemon/base/sha256.h"
-#include "daemon/data/bias.h"
 #include "daemon/pipeline/perception.h"
 #include "daemon/wire/input_decoder.h"
 #include "daemon/wire/status.h"
@@ -57,7 +55,7 @@ struct ShellFigures {
 /// messages in the same order give the same bytes.
 class Engine {
  public:
-  Engine(const DaemonConfig& config, std::unique_ptr<BiasEstimator> bias);
+  explicit Engine(const DaemonConfig& config);
 
   /// V2VOUCH_CONFIG and CALIBRATION, once at start. Each call below adds to the outbox.
   void Start(Outbox& outbox);

@@ -124,7 +124,7 @@ void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
   if (const SenderTrack* sender = intake.Find(bsm.sender)) {
     followed.first_heard = sender->first_received;
   }
-  timeline.Insert(TimedClaim{followed, bsm.seq, bias->Estimate(bsm.sender)}, outputs);
+  timeline.Insert(TimedClaim{followed, bsm.seq, bias->Estimate(bsm.sender, bsm.stamp)}, outputs);
   for (const Diagnostic& diagnostic : outputs.diagnostics) {
     if (diagnostic.reason == Reason::kBsmContradicted && diagnostic.stamp == bsm.stamp) {
       return Tell(bsm, diagnostic.reason, outputs);
@@ -143,15 +143,22 @@ void Perception::State::Tell(const Bsm& bsm, std::optional<Reason> refusal,
   outputs.bsm_verdicts.push_back({bsm.stamp, bsm.seq, bsm.sender, trust, refusal});
 }
 
-// What can no longer change goes to the bias estimator, in order.
+// What can no longer change goes to the bias estimator, in order, and second by second: what it
+// knew at an instant must not depend on how much became settled at once. Of the newest settled
+// instant itself more may come.
 void Perception::State::Settle() {
-  for (const BiasResidual& residual : timeline.TakeSettled()) bias->Observe(residual);
-  bias->AdvanceTo(timeline.settled());
+  constexpr Duration kTick{1};
+  for (const BiasResidual& residual : timeline.TakeSettled()) {
+    bias->AdvanceTo(residual.stamp - kTick);
+    bias->Observe(residual);
+  }
+  if (timeline.settled() != Timestamp{}) bias->AdvanceTo(timeline.settled() - kTick);
 }
 
 void Perception::State::Restart(Outputs&) {
   timeline = Timeline(config);
   intake = BsmIntake(config.v2v);
+  bias->Restart();
   listed = {};
   v2v_listed = {};
   revision = 0;
@@ -195,7 +202,7 @@ void Perception::State::Publish(bool is_correction, Outputs& outputs) {
     outputs.has_v2v_list = true;
     outputs.v2v = outputs.priority;
     outputs.v2v.seq = ++v2v_lists;
-    ListSenders(intake.senders(), timeline.priority(), at, outputs.v2v.tracks);
+    ListSenders(intake.senders(), timeline.priority(), bias->report(), at, outputs.v2v.tracks);
   }
 }
 
@@ -257,6 +264,8 @@ int Perception::sender_count() const { return static_cast<int>(state_->intake.se
 bool Perception::ego_gnss_suspect() const {
   return state_->timeline.priority().is_ego_gnss_suspect();
 }
+
+const BiasReport& Perception::bias_report() const { return state_->bias->report(); }
 
 bool Perception::IsRadarAlive(int radar) const {
   return state_->timeline.local().IsRadarAlive(radar);

@@ -33,6 +33,8 @@ class Perception {
   [[nodiscard]] Timestamp newest_frame() const;
   [[nodiscard]] int sender_count() const;
   [[nodiscard]] bool ego_gnss_suspect() const;
+  /// The newest settled GPS bias estimates.
+  [[nodiscard]] const BiasReport& bias_report() const;
   /// Whether each configured sensor has spoken within three of its periods; radars, then cameras.
   [[nodiscard]] bool IsRadarAlive(int radar) const;
   [[nodiscard]] bool IsCameraAlive(int camera) const;

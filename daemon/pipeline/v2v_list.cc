@@ -3,12 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace v2vouch {
 namespace {
 
 // Claims older than this when listed are left out: their sender has gone silent.
 constexpr double kMaxListed_s = 2.0;
+
+std::optional<BiasEstimate> SettledBias(const BiasReport& report, SenderId sender) {
+  const auto at = std::ranges::lower_bound(report.senders, sender, {}, &BiasReport::Sender::sender);
+  const bool is_known = at != report.senders.end() && at->sender == sender;
+  if (!is_known || at->verdict == BiasVerdict::kTooFew) return std::nullopt;
+  return at->bias;
+}
 
 }  // namespace
 
@@ -28,7 +36,7 @@ EgoPlace PlaceOf(const Alignment& alignment, const EgoState& ego, const VehicleC
 }
 
 void ListSenders(std::span<const SenderTrack> senders, const PriorityPerception& priority,
-                 Timestamp at, std::vector<PublishedTrack>& lines) {
+                 const BiasReport& settled, Timestamp at, std::vector<PublishedTrack>& lines) {
   lines.clear();
   const Alignment& alignment = priority.alignment();
   if (!alignment.is_ready()) return;
@@ -62,7 +70,9 @@ void ListSenders(std::span<const SenderTrack> senders, const PriorityPerception&
     line.sender = sender.sender;
     line.trust = priority.TrustOf(sender.sender);
     line.position = alignment.ToGeodetic(now.p_O, claim.height_m);
-    if (const auto bias = priority.BiasOf(sender.sender)) {
+    auto bias = priority.BiasOf(sender.sender);
+    if (!bias) bias = SettledBias(settled, sender.sender);
+    if (bias) {
       line.bias_east_m = bias->mean_en.x();
       line.bias_north_m = bias->mean_en.y();
     }

@@ -14,8 +14,9 @@ namespace v2vouch {
 EgoPlace PlaceOf(const Alignment& alignment, const EgoState& ego, const VehicleConfig& vehicle);
 
 /// TRACKS_V2V: every sender as heard, its own filtered claim carried forward to `at` and brought
-/// into O, with its trust and bias. Nobody drives by it. Empty before the alignment is ready.
+/// into O, with its trust and bias (of its vehicle's filter where it has one, else as last
+/// settled). Nobody drives by it. Empty before the alignment is ready.
 void ListSenders(std::span<const SenderTrack> senders, const PriorityPerception& priority,
-                 Timestamp at, std::vector<PublishedTrack>& lines);
+                 const BiasReport& settled, Timestamp at, std::vector<PublishedTrack>& lines);
 
 }  // namespace v2vouch

@@ -65,7 +65,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& c
   }
 
   const auto started = SteadyClock::now();
-  Engine engine(config, std::make_unique<NullBiasEstimator>());
+  Engine engine(config);
   Outbox outbox;
   LogEvent event;
   Timestamp first{};

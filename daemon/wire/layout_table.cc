@@ -15,11 +15,13 @@
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/evidence_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
+#include "v2vouch/gps_bias_t.hpp"
 #include "v2vouch/input_status_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
 #include "v2vouch/radar_detection_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/sector_health_t.hpp"
+#include "v2vouch/sender_bias_t.hpp"
 #include "v2vouch/stage_latency_t.hpp"
 #include "v2vouch/text_t.hpp"
 #include "v2vouch/track_list_t.hpp"
@@ -153,6 +155,27 @@ constexpr Field kStageLatencyFields[] = {
 };
 constexpr Layout kStageLatency = MakeLayout("stage_latency_t", kStageLatencyFields);
 
+constexpr Field kSenderBiasFields[] = {
+    {.name = "v2v_id", .kind = Kind::kByte, .fixed = 4},
+    {.name = "verdict", .kind = Kind::kInt8},
+    {.name = "east_m", .kind = Kind::kDouble},
+    {.name = "north_m", .kind = Kind::kDouble},
+    {.name = "covariance_m2", .kind = Kind::kDouble, .fixed = 4},
+};
+constexpr Layout kSenderBias = MakeLayout("sender_bias_t", kSenderBiasFields);
+
+constexpr Field kGpsBiasFields[] = {
+    {.name = "utime", .kind = Kind::kInt64},
+    {.name = "num_used", .kind = Kind::kInt32},
+    {.name = "num_quarantined", .kind = Kind::kInt32},
+    {.name = "common_east_m", .kind = Kind::kDouble},
+    {.name = "common_north_m", .kind = Kind::kDouble},
+    {.name = "common_covariance_m2", .kind = Kind::kDouble, .fixed = 4},
+    {.name = "num_senders", .kind = Kind::kInt32},
+    {.name = "senders", .kind = Kind::kStruct, .type = &kSenderBias, .max_count = 256},
+};
+constexpr Layout kGpsBias = MakeLayout("gps_bias_t", kGpsBiasFields);
+
 constexpr Field kDaemonStatusFields[] = {
     {.name = "utime", .kind = Kind::kInt64},
     {.name = "seq", .kind = Kind::kInt64},
@@ -172,6 +195,7 @@ constexpr Field kDaemonStatusFields[] = {
     {.name = "priority_tracks", .kind = Kind::kInt32},
     {.name = "v2v_senders", .kind = Kind::kInt32},
     {.name = "ego_gnss_suspect", .kind = Kind::kInt8},
+    {.name = "gps_bias", .kind = Kind::kStruct, .type = &kGpsBias},
     {.name = "digest_inputs", .kind = Kind::kInt64},
     {.name = "digest_local", .kind = Kind::kString, .max_length = kMaxNameBytes},
     {.name = "digest_priority", .kind = Kind::kString, .max_length = kMaxNameBytes},
@@ -410,6 +434,7 @@ V2VOUCH_LAYOUT(camera_box_t, kCameraBox)
 V2VOUCH_LAYOUT(camera_detections_t, kCameraDetections)
 V2VOUCH_LAYOUT(camera_image_t, kCameraImage)
 V2VOUCH_LAYOUT(count_t, kCount)
+V2VOUCH_LAYOUT(gps_bias_t, kGpsBias)
 V2VOUCH_LAYOUT(input_status_t, kInputStatus)
 V2VOUCH_LAYOUT(stage_latency_t, kStageLatency)
 V2VOUCH_LAYOUT(daemon_status_t, kDaemonStatus)
@@ -420,6 +445,7 @@ V2VOUCH_LAYOUT(misbehavior_report_t, kMisbehaviorReport)
 V2VOUCH_LAYOUT(radar_detection_t, kRadarDetection)
 V2VOUCH_LAYOUT(radar_scan_t, kRadarScan)
 V2VOUCH_LAYOUT(sector_health_t, kSectorHealth)
+V2VOUCH_LAYOUT(sender_bias_t, kSenderBias)
 V2VOUCH_LAYOUT(text_t, kText)
 V2VOUCH_LAYOUT(track_t, kTrack)
 V2VOUCH_LAYOUT(track_list_t, kTrackList)

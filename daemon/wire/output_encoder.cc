@@ -21,6 +21,7 @@ namespace {
 constexpr std::size_t kMaxTextBytes = (1u << 20) - 1;
 constexpr std::size_t kMaxNameBytes = 255;
 constexpr std::size_t kMaxTracks = 8192;
+constexpr std::size_t kMaxSenders = 256;
 
 template <class Count, class Vector>
 void SetCount(Count& count, const Vector& vector) {
@@ -89,6 +90,33 @@ track_t ToWire(const PublishedTrack& from, const Pose<Odometry, Body>& X_OB) {
   to.longitude_rad = from.position ? from.position->longitude_rad : kNaN;
   to.bias_east_m = from.bias_east_m;
   to.bias_north_m = from.bias_north_m;
+  return to;
+}
+
+void PutBias(const std::optional<BiasEstimate>& bias, double& east_m, double& north_m,
+             double (&covariance_m2)[4]) {
+  east_m = bias ? bias->mean_en.x() : kNaN;
+  north_m = bias ? bias->mean_en.y() : kNaN;
+  for (int i = 0; i < 4; ++i) covariance_m2[i] = bias ? bias->covariance(i / 2, i % 2) : kNaN;
+}
+
+gps_bias_t ToWire(const BiasReport& report) {
+  gps_bias_t to{};
+  to.utime = MicrosOrNever(report.solved_at);
+  PutBias(report.common, to.common_east_m, to.common_north_m, to.common_covariance_m2);
+  const std::size_t count = std::min(report.senders.size(), kMaxSenders);
+  for (std::size_t i = 0; i < count; ++i) {
+    const BiasReport::Sender& from = report.senders[i];
+    sender_bias_t sender{};
+    PutSender(from.sender, sender.v2v_id);
+    sender.verdict = static_cast<std::int8_t>(from.verdict);
+    const bool has_bias = from.verdict != BiasVerdict::kTooFew;
+    PutBias(has_bias ? std::optional(from.bias) : std::nullopt, sender.east_m, sender.north_m,
+            sender.covariance_m2);
+    if (has_bias) ++(from.verdict == BiasVerdict::kUsed ? to.num_used : to.num_quarantined);
+    to.senders.push_back(sender);
+  }
+  SetCount(to.num_senders, to.senders);
   return to;
 }
 
@@ -220,6 +248,7 @@ void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes) {
   to.priority_tracks = status.priority_tracks;
   to.v2v_senders = status.v2v_senders;
   to.ego_gnss_suspect = status.ego_gnss_suspect ? 1 : 0;
+  to.gps_bias = ToWire(status.gps_bias);
   to.digest_inputs = status.digest_inputs;
   to.digest_local = Name(status.digest_local);
   to.digest_priority = Name(status.digest_priority);

@@ -7,6 +7,7 @@
 
 #include "daemon/base/reason.h"
 #include "daemon/base/time.h"
+#include "daemon/data/bias.h"
 
 namespace v2vouch::wire {
 
@@ -44,6 +45,7 @@ struct Status {
   int priority_tracks = 0;
   int v2v_senders = 0;
   bool ego_gnss_suspect = false;
+  BiasReport gps_bias;
   std::int64_t digest_inputs = 0;
   std::string digest_local;
   std::string digest_priority;

@@ -22,6 +22,7 @@
 #include <variant>
 #include <vector>
 
+#include "calibration/gps_bias/gps_bias.h"
 #include "daemon/pipeline/perception.h"
 #include "tests/support/flood.h"
 
@@ -91,7 +92,7 @@ Cost Measure(const Case& c, double duration_s, bool has_late_pictures, const Cos
     const bool is_late = has_late_pictures && std::holds_alternative<CameraDetections>(input);
     return HeaderOf(input).stamp + FromSeconds(is_late ? 0.1 : 0.0);
   });
-  Perception perception(PerceptionConfig{}, std::make_unique<NullBiasEstimator>());
+  Perception perception(PerceptionConfig{}, std::make_unique<GpsBias>(GpsBiasConfig{}));
   Outputs outputs;
   std::vector<double> frames_us;
   std::vector<double> bsms_us;

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "calibration/gps_bias/gps_bias.h"
 #include "daemon/base/sha256.h"
 #include "daemon/pipeline/perception.h"
 #include "daemon/pipeline/timeline.h"
@@ -37,7 +38,7 @@ SyntheticDrive DenseTraffic(int cars, double duration_s) {
 }
 
 void Run(const std::vector<Input>& inputs) {
-  Perception perception(PerceptionConfig{}, std::make_unique<NullBiasEstimator>());
+  Perception perception(PerceptionConfig{}, std::make_unique<GpsBias>(GpsBiasConfig{}));
   Outputs outputs;
   for (const Input& input : inputs) {
     perception.Step(input, outputs);
@@ -87,7 +88,7 @@ void BM_LatePicture(benchmark::State& state) {
   double step_s = 0.0, late_s = 0.0, allowed_s = 0.0;
   double steps = 0.0, pictures = 0.0, reran = 0.0;
   for (auto _ : state) {
-    Perception perception(PerceptionConfig{}, std::make_unique<NullBiasEstimator>());
+    Perception perception(PerceptionConfig{}, std::make_unique<GpsBias>(GpsBiasConfig{}));
     Outputs outputs;
     std::vector<Timestamp> frames;
     double run_steps = 0.0, run_step_s = 0.0, run_late_s = 0.0, run_pictures = 0.0, run_reran = 0.0;

@@ -85,7 +85,7 @@ TEST_P(EngineFuzz, DamagedDriveNeitherCrashesNorPublishesNonsense) {
     // Out of order by up to some messages; now and then far too late.
     if (rng() % 10 == 0) std::swap(messages[i], messages[rng() % 50 == 0 ? 0 : i - i % 7]);
   }
-  Engine engine(DaemonConfig{}, std::make_unique<NullBiasEstimator>());
+  Engine engine(DaemonConfig{});
   Outbox outbox;
   for (const WireMessage& message : messages) {
     outbox.Clear();

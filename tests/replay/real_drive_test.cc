@@ -80,7 +80,7 @@ TEST(RealDrive, TheLongestSlotIsOneLocalTrackWithoutIdentitySwitch) {
   const auto run = LongestRun(events, kLongestSlot, config.perception.vehicle.radars[0]);
   ASSERT_GT(static_cast<double>(run.rbegin()->first - run.begin()->first) * 1e-6, 32.0);
 
-  Engine engine(config, std::make_unique<NullBiasEstimator>());
+  Engine engine(config);
   Outbox outbox;
   std::map<std::int64_t, std::int64_t> id_at;  // By utime of the list.
   int lists = 0;

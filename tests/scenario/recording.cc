@@ -104,7 +104,7 @@ Outcome Perceive(const Recording& recording, const std::string& config_path) {
   DaemonConfig config;
   std::vector<std::string> problems;
   EXPECT_TRUE(LoadDaemonConfig(config_path, config, problems));
-  Engine engine(config, std::make_unique<NullBiasEstimator>());
+  Engine engine(config);
   Outbox outbox;
   Outcome outcome;
   for (const sim::SimEvent& event : recording) {

@@ -44,7 +44,7 @@ struct Published {
 };
 
 Published RunAll(const std::vector<WireMessage>& messages) {
-  Engine engine(DaemonConfig{}, std::make_unique<NullBiasEstimator>());
+  Engine engine(DaemonConfig{});
   Published run;
   Outbox outbox;
   const auto keep = [&] {
@@ -156,7 +156,7 @@ TEST(Engine, SecondCopyOfEveryOwnMessageIsADuplicate) {
 }
 
 TEST(Engine, StaleListsAreMarkedAndInNoDigest) {
-  Engine engine(DaemonConfig{}, std::make_unique<NullBiasEstimator>());
+  Engine engine(DaemonConfig{});
   Outbox outbox;
   engine.PublishStale(std::chrono::milliseconds(100), outbox);
   EXPECT_TRUE(outbox.messages().empty());  // Nothing was ever seen.
@@ -179,7 +179,7 @@ TEST(Engine, CalibrationInForceIsToldByNameUnitAndVerdict) {
   DaemonConfig config;
   config.perception.vehicle.radars[1].yaw_rad = FromDegrees(55.4);
   const auto told = [](const DaemonConfig& by) {
-    Engine engine(by, std::make_unique<NullBiasEstimator>());
+    Engine engine(by);
     Outbox outbox;
     engine.Start(outbox);
     engine.PublishStatus(outbox);
@@ -220,10 +220,46 @@ TEST(Engine, CalibrationInForceIsToldByNameUnitAndVerdict) {
   EXPECT_EQ(find(filed, "ego.speed_scale").std, 0.05);
 }
 
+// The one car that talks is validated within two seconds, and its residuals are settled 0.7 s
+// later.
+TEST(Engine, GpsBiasIsToldInTheStatusUnlessItIsSwitchedOff) {
+  const auto last_status = [](bool is_enabled) {
+    DaemonConfig config;
+    config.gps_bias.enabled = is_enabled;
+    Engine engine(config);
+    Outbox outbox;
+    for (const WireMessage& message : Messages()) {
+      outbox.Clear();
+      engine.OnMessage(message.channel, message.bytes, message.received, outbox);
+    }
+    outbox.Clear();
+    engine.PublishStatus(outbox);
+    const auto status = wire::Decode<daemon_status_t>(outbox.messages()[0].bytes);
+    EXPECT_TRUE(status);
+    return *status;
+  };
+  const daemon_status_t on = last_status(true);
+  EXPECT_GT(on.gps_bias.utime, on.utime - 3'000'000);
+  EXPECT_TRUE(std::isnan(on.gps_bias.common_east_m));  // One sender says nothing of all.
+  ASSERT_EQ(on.gps_bias.num_senders, 1);
+  const sender_bias_t& sender = on.gps_bias.senders[0];
+  EXPECT_EQ(sender.v2v_id[3], 0x11);
+  EXPECT_EQ(sender.verdict, sender_bias_t::USED);
+  EXPECT_EQ(on.gps_bias.num_used, 1);
+  EXPECT_EQ(on.gps_bias.num_quarantined, 0);
+  EXPECT_LT(std::hypot(sender.east_m, sender.north_m), 1.0);
+  EXPECT_GT(sender.covariance_m2[0], 0.0);
+  EXPECT_EQ(sender.covariance_m2[1], sender.covariance_m2[2]);
+  const daemon_status_t off = last_status(false);
+  EXPECT_EQ(off.gps_bias.utime, 0);
+  EXPECT_EQ(off.gps_bias.num_senders, 0);
+  EXPECT_EQ(on.digest_local, off.digest_local);
+}
+
 TEST(Engine, PicturesWithoutADetectorAreRefusedByName) {
   DaemonConfig config;
   config.perception.vehicle.cameras[0].source = CameraSource::kImage;
-  Engine engine(config, std::make_unique<NullBiasEstimator>());
+  Engine engine(config);
   camera_image_t image{};
   image.utime = 1'700'000'000'000'000;
   image.sensor = "FRONT";

@@ -2,12 +2,16 @@
 // What late messages cost, counted in steps, and that no order of arrival changes the state.
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "calibration/gps_bias/gps_bias.h"
 #include "daemon/base/random.h"
 #include "daemon/pipeline/perception.h"
 #include "daemon/pipeline/timeline.h"
@@ -182,8 +186,9 @@ struct State {
 };
 
 /// The state after all inputs, shown by one more empty scan when all is in place.
-State Feed(const SyntheticDrive& drive, const std::vector<Input>& inputs) {
-  Perception perception(ConfigOf(drive), std::make_unique<NullBiasEstimator>());
+State Feed(const SyntheticDrive& drive, const std::vector<Input>& inputs,
+           std::unique_ptr<BiasEstimator> bias = std::make_unique<NullBiasEstimator>()) {
+  Perception perception(ConfigOf(drive), std::move(bias));
   Outputs outputs;
   State state;
   const auto step = [&](const Input& input) {
@@ -252,6 +257,51 @@ TEST(LateDataProperty, EveryPermutationWithinTheBufferEndsInTheSameBits) {
     EXPECT_TRUE(state.priority == expected.priority) << "seed " << seed << ", window " << window_s;
     EXPECT_EQ(state.refused[static_cast<std::size_t>(Reason::kTooOld)], 0u) << seed;
     EXPECT_EQ(state.refused[static_cast<std::size_t>(Reason::kDuplicate)], 0u) << seed;
+  }
+}
+
+// What each message was told of its sender's bias, by sender and time.
+using Told = std::map<std::pair<SenderId, Timestamp>, Eigen::Vector3d>;
+
+// GpsBias, overheard.
+class OverheardBias final : public BiasEstimator {
+ public:
+  explicit OverheardBias(Told& told) : told_(told) {}
+  void Observe(const BiasResidual& residual) override { bias_.Observe(residual); }
+  void AdvanceTo(Timestamp settled) override { bias_.AdvanceTo(settled); }
+  [[nodiscard]] std::optional<BiasEstimate> Estimate(SenderId sender, Timestamp at) const override {
+    const auto estimate = bias_.Estimate(sender, at);
+    if (estimate) {
+      told_[{sender, at}] << estimate->mean_en, estimate->covariance.determinant();
+    }
+    return estimate;
+  }
+  [[nodiscard]] const BiasReport& report() const override { return bias_.report(); }
+  void Restart() override { bias_.Restart(); }
+
+ private:
+  GpsBias bias_{GpsBiasConfig{}};
+  Told& told_;
+};
+
+// The bias estimator is never rolled back, so what it tells of a message must not depend on how
+// much had been settled when that message came.
+TEST(LateDataProperty, EveryPermutationWithinTheBufferFindsTheSameBiases) {
+  const SyntheticDrive drive = Traffic(7.0);
+  const auto in_order = MakeInputs(drive);
+  Told expected;
+  const State state_in_order = Feed(drive, in_order, std::make_unique<OverheardBias>(expected));
+  ASSERT_GT(expected.size(), 30u);
+  EXPECT_EQ(state_in_order.local, Feed(drive, in_order).local);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Random random(seed);
+    const double window_s = random.Uniform(0.05, 0.45);
+    Told told;
+    const State state =
+        Feed(drive, Permuted(in_order, window_s, random), std::make_unique<OverheardBias>(told));
+    EXPECT_TRUE(told == expected) << "seed " << seed << ", window " << window_s;
+    EXPECT_TRUE(state.local == state_in_order.local) << "seed " << seed;
+    EXPECT_TRUE(state.priority == state_in_order.priority) << "seed " << seed;
   }
 }
 
