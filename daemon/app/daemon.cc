@@ -14,6 +14,7 @@
 #include "daemon/app/receiver.h"
 #include "daemon/assembly/calibration_in_force.h"
 #include "daemon/assembly/engine.h"
+#include "daemon/base/angle.h"
 #include "daemon/io/socket_figures.h"
 
 namespace v2vouch {
@@ -128,6 +129,7 @@ class Daemon {
       last_housekeeping_ = now;
       RefreshFigures();
       LogRefusals();
+      LogMounts();
     }
   }
 
@@ -175,6 +177,28 @@ class Daemon {
         count(CalibrationVerdict::kAtBound), count(CalibrationVerdict::kRejected));
   }
 
+  // One line when a radar is found turned, one when it sits right again.
+  void LogMounts() {
+    const std::vector<RadarConfig>& radars = config_.perception.vehicle.radars;
+    moved_.resize(radars.size(), false);
+    for (std::size_t i = 0; i < radars.size(); ++i) {
+      const MountVerdict& mount = engine_.mounts()[i];
+      if (mount.has_moved == moved_[i]) continue;
+      moved_[i] = mount.has_moved;
+      const double correction_deg = ToDegrees(mount.yaw_correction_rad);
+      const double sigma_deg = ToDegrees(mount.yaw_sigma_rad);
+      if (mount.has_moved) {
+        spdlog::warn(
+            "event=mount_moved sensor=radar_{} yaw_correction_deg={:.2f} sigma_deg={:.2f} "
+            "hint=\"check the mount and calibrate again\"",
+            SensorKey(radars[i].name), correction_deg, sigma_deg);
+      } else {
+        spdlog::info("event=mount_right sensor=radar_{} yaw_correction_deg={:.2f} sigma_deg={:.2f}",
+                     SensorKey(radars[i].name), correction_deg, sigma_deg);
+      }
+    }
+  }
+
   void ReportWaiting() {
     const int failures = own_bus_->failures();
     if (failures > 0 && failures != reported_failures_) {
@@ -206,6 +230,7 @@ class Daemon {
   ReasonCounts logged_{};
   std::int64_t logged_drops_ = 0;
   int reported_failures_ = 0;
+  std::vector<bool> moved_;
   int stale_round_ = 0;
   Clock::time_point last_list_{};
   Clock::time_point last_status_{};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibration/gps_bias/gps_bias_config.h"
+#include "calibration/monitor/mount_monitor_config.h"
 #include "daemon/assembly/calibration_file.h"
 #include "daemon/base/visit.h"
 #include "daemon/pipeline/perception_config.h"
@@ -36,6 +37,7 @@ struct DaemonConfig {
   std::string calibration;  ///< File of calibrated values, from this file's folder; "" = none.
   PerceptionConfig perception;
   GpsBiasConfig gps_bias;
+  MountMonitorConfig mount_monitor;
   LcmConfig lcm;
   /// What `calibration` held; its values are in perception.vehicle already.
   std::optional<CalibrationFile> calibrated;
@@ -45,6 +47,7 @@ struct DaemonConfig {
     a.Text("calibration", calibration);
     perception.Visit(a);
     a.Field("gps_bias", gps_bias);
+    a.Field("mount_monitor", mount_monitor);
     a.Field("lcm", lcm);
   }
 };

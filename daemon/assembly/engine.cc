@@ -29,6 +29,7 @@ Engine::Engine(const DaemonConfig& config)
     : config_(config),
       decoder_(config.perception.vehicle, config.lcm.channels),
       perception_(config.perception, MakeBiasEstimator(config.gps_bias)),
+      monitor_(config.mount_monitor, config.perception.vehicle),
       watch_(decoder_.channels()) {
   status_.version = V2VOUCH_VERSION;
   status_.calibration = CalibrationTitle(config);
@@ -82,12 +83,16 @@ void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
     Refuse(diagnostic.reason);
     if (diagnostic.reason == Reason::kClockRestart) {
       watch_.Restart();
+      monitor_.Restart();
       last_status_.reset();
     }
     if (RefusesTheInput(diagnostic.reason)) is_accepted = false;
   }
   const MessageHeader& header = HeaderOf(input);
-  if (is_accepted) watch_.Accepted(channel, header.stamp, header.seq);
+  if (is_accepted) {
+    watch_.Accepted(channel, header.stamp, header.seq);
+    Monitor(input);
+  }
 
   if (outputs_.has_lists) PublishLists(outbox);
   for (const MisbehaviorReport& report : outputs_.reports) {
@@ -98,6 +103,11 @@ void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
   }
   const auto now = watch_.newest_own();
   if (now && (!last_status_ || *now - *last_status_ >= kStatusPeriod)) PublishStatus(outbox);
+}
+
+void Engine::Monitor(const Input& input) {
+  if (const auto* motion = std::get_if<EgoMotion>(&input)) monitor_.OnEgoMotion(*motion);
+  if (const auto* scan = std::get_if<RadarScan>(&input)) monitor_.OnRadarScan(*scan);
 }
 
 void Engine::PublishLists(Outbox& outbox) {
@@ -143,6 +153,19 @@ void Engine::PublishStatus(Outbox& outbox) {
   status_.v2v_senders = perception_.sender_count();
   status_.ego_gnss_suspect = perception_.ego_gnss_suspect();
   status_.gps_bias = perception_.bias_report();
+  status_.mounts.clear();
+  const std::vector<RadarConfig>& radars = config_.perception.vehicle.radars;
+  for (std::size_t i = 0; i < radars.size(); ++i) {
+    const MountVerdict& mount = monitor_.verdicts()[i];
+    status_.mounts.push_back({.sensor = "radar_" + SensorKey(radars[i].name),
+                              .stamp = mount.stamp,
+                              .yaw_correction_rad = mount.yaw_correction_rad,
+                              .yaw_sigma_rad = mount.yaw_sigma_rad,
+                              .windows = mount.windows,
+                              .suspicious_run = mount.suspicious_run,
+                              .has_moved = mount.has_moved,
+                              .driven_s = mount.driven_s});
+  }
   status_.digest_inputs = watch_.accepted();
   status_.digest_local = digest_local_.Hex();
   status_.digest_priority = digest_priority_.Hex();

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calibration/monitor/mount_monitor.h"
 #include "daemon/assembly/daemon_config.h"
 #include "daemon/assembly/input_watch.h"
 #include "daemon/base/sha256.h"
@@ -83,17 +84,21 @@ class Engine {
   [[nodiscard]] std::int64_t accepted() const { return watch_.accepted(); }
   [[nodiscard]] std::string digest_local() const { return digest_local_.Hex(); }
   [[nodiscard]] std::string digest_priority() const { return digest_priority_.Hex(); }
+  /// What each radar's own returns say of its mount, in the configured order.
+  [[nodiscard]] const std::vector<MountVerdict>& mounts() const { return monitor_.verdicts(); }
   /// Whether the last OnMessage or OnDetections gave new lists.
   [[nodiscard]] bool has_lists() const { return has_lists_; }
 
  private:
   void Take(std::size_t channel, const Input& input, Outbox& outbox);
+  void Monitor(const Input& input);
   void PublishLists(Outbox& outbox);
   void Refuse(Reason reason) { ++refusals_[static_cast<std::size_t>(reason)]; }
 
   DaemonConfig config_;
   wire::InputDecoder decoder_;
   Perception perception_;
+  MountMonitor monitor_;
   InputWatch watch_;
   Outputs outputs_;
   ReasonCounts refusals_{};

@@ -18,6 +18,7 @@
 #include "v2vouch/gps_bias_t.hpp"
 #include "v2vouch/input_status_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
+#include "v2vouch/mount_status_t.hpp"
 #include "v2vouch/radar_detection_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/sector_health_t.hpp"
@@ -176,6 +177,18 @@ constexpr Field kGpsBiasFields[] = {
 };
 constexpr Layout kGpsBias = MakeLayout("gps_bias_t", kGpsBiasFields);
 
+constexpr Field kMountStatusFields[] = {
+    {.name = "sensor", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "utime", .kind = Kind::kInt64},
+    {.name = "yaw_correction_rad", .kind = Kind::kDouble},
+    {.name = "yaw_sigma_rad", .kind = Kind::kDouble},
+    {.name = "windows", .kind = Kind::kInt32},
+    {.name = "suspicious_run", .kind = Kind::kInt32},
+    {.name = "has_moved", .kind = Kind::kInt8},
+    {.name = "driven_s", .kind = Kind::kDouble},
+};
+constexpr Layout kMountStatus = MakeLayout("mount_status_t", kMountStatusFields);
+
 constexpr Field kDaemonStatusFields[] = {
     {.name = "utime", .kind = Kind::kInt64},
     {.name = "seq", .kind = Kind::kInt64},
@@ -196,6 +209,8 @@ constexpr Field kDaemonStatusFields[] = {
     {.name = "v2v_senders", .kind = Kind::kInt32},
     {.name = "ego_gnss_suspect", .kind = Kind::kInt8},
     {.name = "gps_bias", .kind = Kind::kStruct, .type = &kGpsBias},
+    {.name = "num_mounts", .kind = Kind::kInt32},
+    {.name = "mounts", .kind = Kind::kStruct, .type = &kMountStatus, .max_count = 64},
     {.name = "digest_inputs", .kind = Kind::kInt64},
     {.name = "digest_local", .kind = Kind::kString, .max_length = kMaxNameBytes},
     {.name = "digest_priority", .kind = Kind::kString, .max_length = kMaxNameBytes},
@@ -441,6 +456,7 @@ V2VOUCH_LAYOUT(daemon_status_t, kDaemonStatus)
 V2VOUCH_LAYOUT(ego_motion_t, kEgoMotion)
 V2VOUCH_LAYOUT(evidence_t, kEvidence)
 V2VOUCH_LAYOUT(gnss_fix_t, kGnssFix)
+V2VOUCH_LAYOUT(mount_status_t, kMountStatus)
 V2VOUCH_LAYOUT(misbehavior_report_t, kMisbehaviorReport)
 V2VOUCH_LAYOUT(radar_detection_t, kRadarDetection)
 V2VOUCH_LAYOUT(radar_scan_t, kRadarScan)

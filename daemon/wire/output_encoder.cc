@@ -249,6 +249,19 @@ void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes) {
   to.v2v_senders = status.v2v_senders;
   to.ego_gnss_suspect = status.ego_gnss_suspect ? 1 : 0;
   to.gps_bias = ToWire(status.gps_bias);
+  for (const MountStatus& from : status.mounts) {
+    mount_status_t mount{};
+    mount.sensor = Name(from.sensor);
+    mount.utime = ToMicros(from.stamp);
+    mount.yaw_correction_rad = from.yaw_correction_rad;
+    mount.yaw_sigma_rad = from.yaw_sigma_rad;
+    mount.windows = from.windows;
+    mount.suspicious_run = from.suspicious_run;
+    mount.has_moved = from.has_moved ? 1 : 0;
+    mount.driven_s = from.driven_s;
+    to.mounts.push_back(mount);
+  }
+  SetCount(to.num_mounts, to.mounts);
   to.digest_inputs = status.digest_inputs;
   to.digest_local = Name(status.digest_local);
   to.digest_priority = Name(status.digest_priority);

@@ -22,6 +22,17 @@ struct InputStatus {
   bool is_silent = false;
 };
 
+struct MountStatus {
+  std::string sensor;
+  Timestamp stamp{};  ///< Timestamp{}: no window yet.
+  double yaw_correction_rad = 0.0;
+  double yaw_sigma_rad = 0.0;
+  int windows = 0;
+  int suspicious_run = 0;
+  bool has_moved = false;
+  double driven_s = 0.0;
+};
+
 struct StageLatency {
   std::string stage;
   double p50_us = 0.0;
@@ -46,6 +57,7 @@ struct Status {
   int v2v_senders = 0;
   bool ego_gnss_suspect = false;
   BiasReport gps_bias;
+  std::vector<MountStatus> mounts;
   std::int64_t digest_inputs = 0;
   std::string digest_local;
   std::string digest_priority;

@@ -256,6 +256,49 @@ TEST(Engine, GpsBiasIsToldInTheStatusUnlessItIsSwitchedOff) {
   EXPECT_EQ(on.digest_local, off.digest_local);
 }
 
+// The world of the synthetic drive stands still but for its cars; a radar configured half a degree
+// to the right of where it sits must be turned to the left.
+TEST(Engine, ATurnedRadarIsToldInTheStatusAndNothingElseIsChanged) {
+  const auto run = [](bool is_watched) {
+    DaemonConfig config;
+    config.mount_monitor.enabled = is_watched;
+    config.mount_monitor.window_s = 10.0;
+    config.perception.vehicle.radars[1].yaw_rad -= FromDegrees(0.5);
+    testing::SyntheticDrive drive;
+    drive.duration_s = 32.0;
+    for (int i = 0; i < 60; ++i) {
+      drive.cars.push_back({.x_m = 5.0 * i, .y_m = i % 2 == 0 ? 8.0 : -8.0});
+    }
+    Engine engine(config);
+    Outbox outbox;
+    for (const WireMessage& message :
+         testing::EncodeInputs(testing::MakeInputs(drive), VehicleConfig{})) {
+      outbox.Clear();
+      engine.OnMessage(message.channel, message.bytes, message.received, outbox);
+    }
+    outbox.Clear();
+    engine.PublishStatus(outbox);
+    const auto status = wire::Decode<daemon_status_t>(outbox.messages()[0].bytes);
+    EXPECT_TRUE(status);
+    return *status;
+  };
+  const daemon_status_t watched = run(true);
+  ASSERT_EQ(watched.num_mounts, 3);
+  const mount_status_t& front = watched.mounts[0];
+  const mount_status_t& left = watched.mounts[1];
+  EXPECT_EQ(left.sensor, "radar_front_left");
+  EXPECT_EQ(left.windows, 3);
+  EXPECT_EQ(left.has_moved, 1);
+  EXPECT_NEAR(ToDegrees(left.yaw_correction_rad), 0.5, 0.1);
+  EXPECT_LT(left.yaw_sigma_rad, FromDegrees(0.1));
+  EXPECT_EQ(front.has_moved, 0);
+  EXPECT_NEAR(ToDegrees(front.yaw_correction_rad), 0.0, 0.1);
+  const daemon_status_t unwatched = run(false);
+  EXPECT_EQ(unwatched.mounts[1].windows, 0);
+  EXPECT_EQ(unwatched.digest_local, watched.digest_local);
+  EXPECT_EQ(unwatched.digest_priority, watched.digest_priority);
+}
+
 TEST(Engine, PicturesWithoutADetectorAreRefusedByName) {
   DaemonConfig config;
   config.perception.vehicle.cameras[0].source = CameraSource::kImage;
