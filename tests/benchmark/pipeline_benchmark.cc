@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calibration/gps_bias/gps_bias.h"
+#include "daemon/base/random.h"
 #include "daemon/base/sha256.h"
 #include "daemon/pipeline/perception.h"
 #include "daemon/pipeline/timeline.h"
@@ -125,6 +126,33 @@ void BM_LatePicture(benchmark::State& state) {
   state.counters["of_allowed"] = late_s / allowed_s;
 }
 BENCHMARK(BM_LatePicture)->Arg(50)->Arg(100)->Arg(300)->Unit(benchmark::kMillisecond);
+
+// One solve of the GPS biases of so many senders, each with a residual in every second of the
+// window: what one step of each second of message time takes on top. Senders are vehicles in
+// PRIORITY, a handful mostly; can afford 50 ms at the table's size, one frame's period.
+void BM_GpsBiasSolve(benchmark::State& state) {
+  GpsBiasConfig config;
+  GpsBias bias(config);
+  Random random(1);
+  const auto senders = static_cast<SenderId>(state.range(0));
+  std::int64_t second = 0;
+  const auto feed = [&] {
+    for (SenderId sender = 1; sender <= senders; ++sender) {
+      const Eigen::Vector2d noise(random.Normal(0.0, 0.5), random.Normal(0.0, 0.5));
+      bias.Observe({sender, DriveStart() + FromSeconds(static_cast<double>(second) + 0.5), noise,
+                    0.25 * Eigen::Matrix2d::Identity()});
+    }
+    ++second;
+  };
+  for (int i = 0; i < 60; ++i) feed();
+  for (auto _ : state) {
+    state.PauseTiming();
+    feed();
+    state.ResumeTiming();
+    bias.AdvanceTo(DriveStart() + FromSeconds(static_cast<double>(second)));
+  }
+}
+BENCHMARK(BM_GpsBiasSolve)->Arg(1)->Arg(8)->Arg(32)->Unit(benchmark::kMillisecond);
 
 // LOCAL after two seconds of a drive, and the inputs of the half second that follows.
 struct Warm {
