@@ -7,8 +7,8 @@
 #include <memory>
 #include <optional>
 
-#include "daemon/assembly/engine.h"
 #include "daemon/io/event_log.h"
+#include "daemon/pipeline/perception.h"
 #include "daemon/wire/input_decoder.h"
 
 namespace v2vouch {
@@ -28,12 +28,15 @@ class Recorder final : public BiasEstimator {
   explicit Recorder(std::vector<BiasResidual>& residuals) : residuals_(residuals) {}
   void Observe(const BiasResidual& residual) override { residuals_.push_back(residual); }
   void AdvanceTo(Timestamp) override {}
-  [[nodiscard]] std::optional<BiasEstimate> Estimate(SenderId) const override {
+  [[nodiscard]] std::optional<BiasEstimate> Estimate(SenderId, Timestamp) const override {
     return std::nullopt;
   }
+  [[nodiscard]] const BiasReport& report() const override { return report_; }
+  void Restart() override {}
 
  private:
   std::vector<BiasResidual>& residuals_;
+  BiasReport report_;
 };
 
 // Small differences only: a sphere will do.
@@ -60,10 +63,10 @@ bool CollectRemotePairs(const std::vector<std::string>& logs, const DaemonConfig
     const auto reader = LogReader::Open(logs[i], error);
     if (reader == nullptr) return false;
     std::vector<BiasResidual> residuals;
-    Engine engine(config, std::make_unique<Recorder>(residuals));
+    Perception perception(config.perception, std::make_unique<Recorder>(residuals));
     std::map<SenderId, std::vector<Said>> said;
     std::optional<Wgs84> ego;
-    Outbox outbox;
+    Outputs outputs;
     LogEvent event;
     std::int64_t events = 0;
     while (reader->Next(event)) {
@@ -72,11 +75,10 @@ bool CollectRemotePairs(const std::vector<std::string>& logs, const DaemonConfig
       }
       const auto channel = decoder.Find(event.channel);
       if (!channel) continue;
-      outbox.Clear();
-      engine.OnMessage(event.channel, event.bytes, event.received, outbox);
       const auto decoded = decoder.Decode(*channel, event.bytes, event.received, dropped);
       const Input* input = decoded ? std::get_if<Input>(&*decoded) : nullptr;
       if (input == nullptr) continue;
+      perception.Step(*input, outputs);
       if (const auto* fix = std::get_if<GnssFix>(input)) ego = fix->position;
       const auto* bsm = std::get_if<Bsm>(input);
       if (bsm == nullptr || !ego || !bsm->latitude_rad || !bsm->longitude_rad) continue;
