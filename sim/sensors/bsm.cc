@@ -197,7 +197,7 @@ std::optional<Message> BsmSender::NextMessage() {
     radio = is_device() ? snapshot.ego.PointAt(-kDeviceBehind_m, 0.0) : said.centre;
   } else {
     const Actor& actor = world_.actors()[static_cast<std::size_t>(actor_)];
-    const double then = time - sender_.position_age_s;
+    const double then = time - spec.position_age_s - sender_.position_age_s;
     if (!actor.trajectory.Exists(time) || !actor.trajectory.Exists(then)) return std::nullopt;
     const Motion motion = actor.trajectory.At(then);
     said.centre = motion.centre;

@@ -56,6 +56,7 @@ struct BsmSpec {
   GnssErrorSpec gnss;
   double latency_s = 0.07;         ///< Shortest time from position fix to reception.
   double latency_spread_s = 0.13;  ///< Uniform on top.
+  double position_age_s = 0.0;     ///< Every place told is so much older than its time stamp says.
   double speed_markov_mps = 0.05;  ///< Gauss-Markov speed error, time constant of `gnss`.
   double speed_white_mps = 0.05;
   double heading_markov_rad = FromDegrees(0.4);
@@ -79,6 +80,7 @@ struct BsmSpec {
     a.Field("gnss", gnss);
     a.Field("latency_s", latency_s, {.at_least = 0.0, .at_most = 10.0});
     a.Field("latency_spread_s", latency_spread_s, {.at_least = 0.0, .at_most = 10.0});
+    a.Field("position_age_s", position_age_s, {.at_least = 0.0, .at_most = 2.0});
     a.Field("speed_markov_mps", speed_markov_mps, {.at_least = 0.0, .at_most = 20.0});
     a.Field("speed_white_mps", speed_white_mps, {.at_least = 0.0, .at_most = 20.0});
     a.Degrees("heading_markov_deg", heading_markov_rad, {.at_least = 0.0, .at_most = 180.0});
@@ -128,7 +130,7 @@ struct SenderSpec {
   double bias_north_m = 0.0;
   double noise_scale = 1.0;  ///< Of all this sender's GNSS errors.
   double latency_scale = 1.0;
-  double position_age_s = 0.0;     ///< The place told is so much older than its time stamp says.
+  double position_age_s = 0.0;     ///< Added to that of `bsm`.
   double semi_major_m = 0.0;       ///< Reported accuracy; 0 = as in `bsm`.
   double identity_change_s = 0.0;  ///< Takes a new TemporaryID and certificate then; 0 = never.
 

@@ -167,6 +167,8 @@ TEST(BsmSender, TellsWhereItWasWhenItsPositionIsOlderThanItsStamp) {
   const Vec2 fresh = place();
   scenario.vehicles[0].sender.position_age_s = 0.15;
   EXPECT_NEAR((fresh - place()).x(), 20.0 * 0.15, 1e-6);
+  scenario.bsm.position_age_s = 0.1;
+  EXPECT_NEAR((fresh - place()).x(), 20.0 * 0.25, 1e-6);
 }
 
 }  // namespace
