@@ -116,14 +116,39 @@ void PlaceInLook(const T* target, const LookPose& pose, T& x, T& y) {
   y = T(c) * dy - T(s) * dx;
 }
 
-/// Parameters: radar | target | offset of the reflections, along and across the ray.
+/// Where a vehicle's reflections lie against the foot of its box, on average over vehicles, by the
+/// aspect a it is seen under (its direction of motion against the ray). Mirror symmetry leaves
+///
+///     along the ray:  s0 + s1 cos a + s2 cos 2a        across:  s3 sin a + s4 sin 2a
+inline constexpr int kShape = 5;
+
+struct Aspect {
+  double cos1 = 0.0, cos2 = 0.0, sin1 = 0.0, sin2 = 0.0;
+};
+
+/// Parameters: radar | target; for vehicles that are no points also | offset of this chain's
+/// reflections, along and across the ray | shape.
 struct RadarTargetCost {
   LookPose pose;
   double measured;  ///< Range, or azimuth.
   double sigma;
   bool is_azimuth;
+  Aspect aspect;
+
   template <class T>
-  bool operator()(const T* radar, const T* target, const T* offset, T* out) const {
+  bool operator()(const T* radar, const T* target, const T* offset, const T* shape, T* out) const {
+    const T along = offset[0] + shape[0] + shape[1] * T(aspect.cos1) + shape[2] * T(aspect.cos2);
+    const T across = offset[1] + shape[3] * T(aspect.sin1) + shape[4] * T(aspect.sin2);
+    return Compare(radar, target, along, across, out);
+  }
+  template <class T>
+  bool operator()(const T* radar, const T* target, T* out) const {
+    return Compare(radar, target, T(0.0), T(0.0), out);
+  }
+
+ private:
+  template <class T>
+  bool Compare(const T* radar, const T* target, const T& along, const T& across, T* out) const {
     using std::atan2;
     using std::sqrt;
     T x;
@@ -134,17 +159,12 @@ struct RadarTargetCost {
     const T range = sqrt(x * x + y * y);
     if (!(range > T(0.5))) return false;
     if (is_azimuth) {
-      const T off = T(measured) - offset[1] / range - (atan2(y, x) - radar[2]);
+      const T off = T(measured) - across / range - (atan2(y, x) - radar[2]);
       out[0] = atan2(sin(off), cos(off)) / T(sigma);
     } else {
-      out[0] = (T(measured) - offset[0] - range) / T(sigma);
+      out[0] = (T(measured) - along - range) / T(sigma);
     }
     return true;
-  }
-  template <class T>
-  bool operator()(const T* radar, const T* target, T* out) const {
-    const T none[2] = {T(0.0), T(0.0)};
-    return (*this)(radar, target, none, out);
   }
 };
 

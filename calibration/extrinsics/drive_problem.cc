@@ -15,11 +15,20 @@ namespace v2vouch {
 namespace {
 
 constexpr int kThreads = 2;
+constexpr double kHeld = 1e-3;         // Of a prior's sigma: as good as fixed.
 constexpr double kMinSpeed_mps = 2.0;  // Slower, the direction of GNSS velocity says little.
 
 template <class Cost, int... kSizes>
 ceres::CostFunction* AutoDiff(const Cost& cost) {
   return new ceres::AutoDiffCostFunction<Cost, 1, kSizes...>(new Cost(cost));
+}
+
+// The direction a window's target moves in, against the ray from the ego to it.
+Aspect AspectOf(const TargetWindow& window, const LookPose& pose) {
+  const double ray = std::atan2(window.state[1] + pose.dt_s * window.state[3] - pose.y_m,
+                                window.state[0] + pose.dt_s * window.state[2] - pose.x_m);
+  const double aspect = std::atan2(window.state[3], window.state[2]) - ray;
+  return {std::cos(aspect), std::cos(2.0 * aspect), std::sin(aspect), std::sin(2.0 * aspect)};
 }
 
 class Progress final : public ceres::IterationCallback {
@@ -92,7 +101,8 @@ struct DriveProblem::State {
     const auto add = [&]<int kSize>(double* block, int at) {
       for (int i = 0; i < kSize; ++i) {
         const auto& d = descriptions[static_cast<std::size_t>(at + i)];
-        Add(AutoDiff<PriorCost, kSize>({i, d.prior, d.prior_std}), nullptr, group, 0.0, block);
+        const double sigma = d.is_considered ? kHeld * d.prior_std : d.prior_std;
+        Add(AutoDiff<PriorCost, kSize>({i, d.prior, sigma}), nullptr, group, 0.0, block);
       }
       blocks.push_back(block);
     };
@@ -147,6 +157,19 @@ struct DriveProblem::State {
     }
   }
 
+  // What reflections of all vehicles have in common, with its prior when first asked for.
+  double* Shape(double time_s) {
+    if (!shape) {
+      shape.emplace();
+      blocks.push_back(shape->data());
+      for (int i = 0; i < kShape; ++i) {
+        Add(AutoDiff<PriorCost, kShape>({i, 0.0, options.shape_m}), nullptr, Group("shape"), time_s,
+            shape->data());
+      }
+    }
+    return shape->data();
+  }
+
   void AddGnss();
   void AddGyroDrift(double heading_sigma);
   void AddTargets();
@@ -161,9 +184,10 @@ struct DriveProblem::State {
   std::vector<std::optional<std::array<double, 2>>> epochs;   // Speed, yaw rate.
   std::vector<std::array<double, 4>> targets;                 // Place, velocity.
   std::vector<std::optional<std::array<double, 2>>> offsets;  // Per chain: along, across.
-  std::vector<std::optional<double>> nods;                    // Per picture.
-  std::vector<std::optional<double>> drifts;                  // Heading minus gyro, per knot.
-  std::vector<double*> blocks;  // In the order of the Jacobian's columns.
+  std::optional<std::array<double, kShape>> shape;
+  std::vector<std::optional<double>> nods;    // Per picture.
+  std::vector<std::optional<double>> drifts;  // Heading minus gyro, per knot.
+  std::vector<double*> blocks;                // In the order of the Jacobian's columns.
   std::vector<ceres::ResidualBlockId> ids;
   std::vector<Equation> equations;
   std::vector<std::string> groups;
@@ -296,11 +320,18 @@ void DriveProblem::State::AddTargets() {
       const int range_group = Group(RadarName(look.radar) + ".target_range");
       const int azimuth_group = Group(RadarName(look.radar) + ".target_azimuth");
       const double across_m = options.wander_m;
-      const RadarTargetCost range{look.pose, look.range_m,
-                                  std::hypot(radar.range_sigma_m, across_m), false};
+      const Aspect aspect = AspectOf(window, look.pose);
+      const RadarTargetCost range{.pose = look.pose,
+                                  .measured = look.range_m,
+                                  .sigma = std::hypot(radar.range_sigma_m, across_m),
+                                  .is_azimuth = false,
+                                  .aspect = aspect};
       const RadarTargetCost azimuth{
-          look.pose, look.azimuth_rad,
-          std::hypot(radar.azimuth_sigma_rad, across_m / std::max(1.0, look.range_m)), true};
+          .pose = look.pose,
+          .measured = look.azimuth_rad,
+          .sigma = std::hypot(radar.azimuth_sigma_rad, across_m / std::max(1.0, look.range_m)),
+          .is_azimuth = true,
+          .aspect = aspect};
       constexpr int kR = MountingParameters::kPerRadar;
       if (options.offset_m <= 0.0) {
         Add(AutoDiff<RadarTargetCost, kR, 4>(range), &cauchy, range_group, time_s,
@@ -318,10 +349,11 @@ void DriveProblem::State::AddTargets() {
               k == 0 ? range_group : azimuth_group, time_s, offset->data());
         }
       }
-      Add(AutoDiff<RadarTargetCost, kR, 4, 2>(range), &cauchy, range_group, time_s,
-          parameters.Radar(look.radar), target.data(), offset->data());
-      Add(AutoDiff<RadarTargetCost, kR, 4, 2>(azimuth), &cauchy, azimuth_group, time_s,
-          parameters.Radar(look.radar), target.data(), offset->data());
+      double* const of_all = Shape(time_s);
+      Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape>(range), &cauchy, range_group, time_s,
+          parameters.Radar(look.radar), target.data(), offset->data(), of_all);
+      Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape>(azimuth), &cauchy, azimuth_group, time_s,
+          parameters.Radar(look.radar), target.data(), offset->data(), of_all);
     }
     for (const auto& look : window.camera_looks) {
       const CameraConfig& camera = data.vehicle->cameras[static_cast<std::size_t>(look.camera)];

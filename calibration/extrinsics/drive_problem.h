@@ -36,6 +36,7 @@ struct ProblemOptions {
   /// targets.
   double wander_m = 0.4;
   double offset_m = 0.4;
+  double shape_m = 1.5;  ///< What is the same for all vehicles under one aspect.
   /// Groups whose noise is correlated: by what their variance in blocks exceeds white noise
   /// (MountingInformation::inflation). Their equations weigh so much less.
   std::map<std::string, double> inflation;

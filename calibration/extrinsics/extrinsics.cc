@@ -143,7 +143,7 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
   const auto tell = [&](double share, const char* what) {
     if (progress) progress(share, what);
   };
-  MountingParameters parameters(vehicle, options.priors);
+  MountingParameters parameters(vehicle, options.priors, options.point_targets);
   ExtrinsicsResult result(parameters);
   const EgoTrack ego(log.motion);
   if (ego.samples().size() < 50) {
@@ -203,7 +203,7 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
     double value = held.values[static_cast<std::size_t>(i)];
     estimate.verdict = VerdictOf(parameters.values()[static_cast<std::size_t>(i)], data_std,
                                  d.prior, d.prior_std, Fits(d.sensor, result.groups));
-    if (d.is_anchor) estimate.verdict = CalibrationVerdict::kPrior;
+    if (d.is_anchor || d.is_considered) estimate.verdict = CalibrationVerdict::kPrior;
     if (estimate.verdict == CalibrationVerdict::kPrior) value = d.prior;
     parameters.values()[static_cast<std::size_t>(i)] = value;
     estimate.value = value * d.to_unit;
@@ -221,7 +221,9 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
     }
     std::ranges::stable_sort(estimate.shares, std::greater{},
                              &std::pair<std::string, double>::second);
-    estimate.hint = HintFor(d.name, estimate.verdict, result.excitation);
+    estimate.hint = d.is_considered
+                        ? "vehicles are no points: only targets at known places could tell more"
+                        : HintFor(d.name, estimate.verdict, result.excitation);
     if (estimate.verdict == CalibrationVerdict::kAtBound) {
       result.problems.push_back(d.name + " is farther from the vehicle file than 3 sigma of it");
     } else if (estimate.verdict == CalibrationVerdict::kRejected) {

@@ -16,7 +16,8 @@ constexpr double kDegrees = 180.0 / kPi;
 
 }  // namespace
 
-MountingParameters::MountingParameters(const VehicleConfig& vehicle, const MountingPriors& priors)
+MountingParameters::MountingParameters(const VehicleConfig& vehicle, const MountingPriors& priors,
+                                       bool knows_camera_places)
     : radars_(static_cast<int>(vehicle.radars.size())),
       cameras_(static_cast<int>(vehicle.cameras.size())) {
   std::string sensor;
@@ -24,7 +25,7 @@ MountingParameters::MountingParameters(const VehicleConfig& vehicle, const Mount
                        bool is_anchor = false) {
     values_.push_back(prior);
     descriptions_.push_back(
-        {sensor + "." + quantity, sensor, prior, prior_std, to_unit, is_anchor});
+        {sensor + "." + quantity, sensor, prior, prior_std, to_unit, is_anchor, false});
   };
   for (const RadarConfig& radar : vehicle.radars) {
     sensor = "radar_" + Lower(radar.name);
@@ -36,6 +37,9 @@ MountingParameters::MountingParameters(const VehicleConfig& vehicle, const Mount
     sensor = "camera_" + Lower(camera.name);
     add("x_m", camera.x_m, priors.place_m);
     add("y_m", camera.y_m, priors.place_m);
+    for (auto d = descriptions_.end() - 2; d != descriptions_.end(); ++d) {
+      d->is_considered = !knows_camera_places;
+    }
     add("z_m", camera.z_m, priors.place_m);
     add("yaw_deg", camera.yaw_rad, priors.angle_rad, kDegrees);
     add("pitch_deg", camera.pitch_rad, priors.angle_rad, kDegrees);

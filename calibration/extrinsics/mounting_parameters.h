@@ -35,7 +35,10 @@ class MountingParameters {
   static constexpr int kEgo = 7;
   enum Ego { kAntennaX, kAntennaY, kHeadingBias, kSpeedScale, kYawRateBias, kOdometerY, kSlip };
 
-  MountingParameters(const VehicleConfig& vehicle, const MountingPriors& priors);
+  /// @param knows_camera_places whether targets are points: else how far reflections lie from where
+  ///        a box's foot is shifts a camera's x and y more than the tape measure's doubt.
+  MountingParameters(const VehicleConfig& vehicle, const MountingPriors& priors,
+                     bool knows_camera_places = true);
 
   struct Description {
     std::string name;    ///< radar_front.yaw_deg
@@ -44,6 +47,8 @@ class MountingParameters {
     double prior_std = 1.0;
     double to_unit = 1.0;    ///< From SI to the unit the name ends with.
     bool is_anchor = false;  ///< Physics says what the data need not: its prior counts as data.
+    /// Held at the prior, its doubt passed on to the others: what the data say of it is not it.
+    bool is_considered = false;
   };
   [[nodiscard]] const std::vector<Description>& descriptions() const { return descriptions_; }
   [[nodiscard]] int size() const { return static_cast<int>(values_.size()); }

@@ -65,7 +65,8 @@ std::vector<Cluster> MovingClusters(const RadarScan& scan, const EgoTrack& ego,
       continue;
     }
     const double share = 1.0 / ++same->reflections;
-    same->hit.range_m += share * (hit.range_m - same->hit.range_m);
+    // The nearest: that is where the foot of a box is, too.
+    same->hit.range_m = std::min(same->hit.range_m, hit.range_m);
     same->hit.azimuth_rad += share * (hit.azimuth_rad - same->hit.azimuth_rad);
     same->hit.x_O += share * (hit.x_O - same->hit.x_O);
     same->hit.y_O += share * (hit.y_O - same->hit.y_O);

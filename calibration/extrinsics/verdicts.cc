@@ -44,13 +44,24 @@ HeldPosterior HoldWeakDirections(const Eigen::MatrixXd& S, const MountingParamet
   HeldPosterior held;
   const Eigen::VectorXd D = PriorStd(solution);
   const Eigen::Index n = D.size();
-  const Eigen::MatrixXd W = D.asDiagonal() * S * D.asDiagonal();
-  Eigen::MatrixXd anchored = W;
+  // In units of the priors; what is considered only is taken out, and its pull on the rest kept.
+  Eigen::MatrixXd W = D.asDiagonal() * S * D.asDiagonal();
+  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd step(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& d = solution.descriptions()[static_cast<std::size_t>(i)];
     step(i) = (solution.values()[static_cast<std::size_t>(i)] - d.prior) / D(i);
+    if (!d.is_considered) continue;
+    pull.col(i) = W.col(i);
+    W.row(i).setZero();
+    W.col(i).setZero();
+    step(i) = 0.0;
+  }
+  Eigen::MatrixXd anchored = W;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& d = solution.descriptions()[static_cast<std::size_t>(i)];
     if (d.is_anchor) anchored(i, i) += 1.0;
+    if (d.is_considered) pull.row(i).setZero();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(W);
   const Eigen::MatrixXd& Q = eigen.eigenvectors();
@@ -62,15 +73,19 @@ HeldPosterior HoldWeakDirections(const Eigen::MatrixXd& S, const MountingParamet
     held.weak.push_back({l(k), InWords(Q.col(k), solution)});
   }
   const auto posterior = [&](const Eigen::ArrayXd& information) -> Eigen::MatrixXd {
-    return D.asDiagonal() * Q * (1.0 + information).inverse().matrix().asDiagonal() *
-           Q.transpose() * D.asDiagonal();
+    const Eigen::MatrixXd C =
+        Q * (1.0 + information).inverse().matrix().asDiagonal() * Q.transpose();
+    const Eigen::MatrixXd K = C * pull;  // What one sigma of the considered ones moves.
+    return D.asDiagonal() * (C + K * K.transpose() - K - K.transpose()) * D.asDiagonal();
   };
   held.covariance = posterior(kept);
   held.crlb = posterior(l).diagonal().cwiseSqrt();
 
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> data(anchored);
-  const Eigen::VectorXd variance =
-      data.eigenvectors().cwiseAbs2() * data.eigenvalues().cwiseMax(kTiny).cwiseInverse();
+  const Eigen::MatrixXd inverse = data.eigenvectors() *
+                                  data.eigenvalues().cwiseMax(kTiny).cwiseInverse().asDiagonal() *
+                                  data.eigenvectors().transpose();
+  const Eigen::VectorXd variance = inverse.diagonal() + (inverse * pull).rowwise().squaredNorm();
   held.data_std = D.cwiseProduct(variance.cwiseSqrt());
   for (Eigen::Index i = 0; i < n; ++i) {
     held.values.push_back(solution.descriptions()[static_cast<std::size_t>(i)].prior +
