@@ -54,7 +54,7 @@ Arrival::Content DetectThread::Look(const Arrival& picture) {
   ReasonCounts unused{};
   const auto decoded = decoder_.Decode(*channel, *bytes, picture.received, unused);
   if (!decoded) return decoded.reason();
-  const auto* image = std::get_if<wire::CameraImage>(&*decoded);
+  const auto* image = std::get_if<CameraImage>(&*decoded);
   if (image == nullptr || detector_ == nullptr) return Reason::kNoDetector;
   try {
     auto detections = detector_->Detect(*image);

@@ -17,7 +17,7 @@ class ObjectDetector {
  public:
   virtual ~ObjectDetector() = default;
   /// Detections carry the picture's own stamp, seq and camera.
-  virtual Result<CameraDetections> Detect(const wire::CameraImage& image) = 0;
+  virtual Result<CameraDetections> Detect(const CameraImage& image) = 0;
 };
 
 /// Pictures to detections, beside the fusion thread, which never waits for it. Each camera has one

@@ -87,7 +87,7 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
   for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
     if (vehicle.cameras[i].source != CameraSource::kImage) continue;
     checks.Channel("vehicle.cameras[" + std::to_string(i) + "].name",
-                   names.camera_prefix + vehicle.cameras[i].name + names.detected_suffix);
+                   wire::DetectedChannel(names, vehicle.cameras[i]));
   }
   checks.Channel("lcm.channels.tracks_local", names.tracks_local);
   checks.Channel("lcm.channels.tracks_priority", names.tracks_priority);
@@ -135,7 +135,16 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
 
 bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
                       std::vector<std::string>& problems) {
-  if (!path.empty()) config::Load(path, config, problems);
+  if (!path.empty()) {
+    const DetectorConfig before = config.detector;
+    config::Load(path, config, problems);
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    const auto beside = [&](std::string& file, const std::string& old) {
+      if (!file.empty() && file != old) file = (folder / file).string();
+    };
+    beside(config.detector.model, before.model);
+    beside(config.detector.network, before.network);
+  }
   CheckConfig(config, path.empty() ? "built-in configuration" : path, problems);
   config.calibrated.reset();
   if (!config.calibration.empty()) {

@@ -9,6 +9,7 @@
 #include "calibration/monitor/mount_monitor_config.h"
 #include "daemon/assembly/calibration_file.h"
 #include "daemon/base/visit.h"
+#include "daemon/data/detector_config.h"
 #include "daemon/pipeline/perception_config.h"
 #include "daemon/wire/channels.h"
 
@@ -38,6 +39,7 @@ struct DaemonConfig {
   PerceptionConfig perception;
   GpsBiasConfig gps_bias;
   MountMonitorConfig mount_monitor;
+  DetectorConfig detector;  ///< Replay has no use for it: it takes what the network saw.
   LcmConfig lcm;
   /// What `calibration` held; its values are in perception.vehicle already.
   std::optional<CalibrationFile> calibrated;
@@ -48,6 +50,7 @@ struct DaemonConfig {
     perception.Visit(a);
     a.Field("gps_bias", gps_bias);
     a.Field("mount_monitor", mount_monitor);
+    a.Field("detector", detector);
     a.Field("lcm", lcm);
   }
 };
@@ -59,6 +62,8 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
 
 /// Defaults where `path` is empty; the calibration that it names is read and applied. @return false
 /// with all problems named.
+/// Defaults where `path` is empty. Files that the configuration names are looked for beside it.
+/// @return false with all problems named.
 bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
                       std::vector<std::string>& problems);
 

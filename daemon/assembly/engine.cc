@@ -62,11 +62,10 @@ void Engine::OnDetections(std::string_view image_channel, const CameraDetections
   const auto index = decoder_.Find(image_channel);
   if (!index) return Refuse(Reason::kUnknownChannel);
   watch_.Received(*index);
-  const wire::ChannelNames& names = config_.lcm.channels;
-  const std::string& sensor =
-      config_.perception.vehicle.cameras[static_cast<std::size_t>(detections.camera)].name;
-  wire::EncodeDetections(detections, sensor,
-                         outbox.Add(names.camera_prefix + sensor + names.detected_suffix));
+  const CameraConfig& camera =
+      config_.perception.vehicle.cameras[static_cast<std::size_t>(detections.camera)];
+  wire::EncodeDetections(detections, camera,
+                         outbox.Add(wire::DetectedChannel(config_.lcm.channels, camera)));
   Take(*index, detections, outbox);
 }
 
@@ -145,6 +144,8 @@ void Engine::PublishStatus(Outbox& outbox) {
   ++status_.seq;
   watch_.Report(status_.inputs);
   status_.refusals = refusals_;
+  status_.refusals[static_cast<std::size_t>(Reason::kImageReplaced)] +=
+      static_cast<std::uint64_t>(figures_.images_replaced);
   status_.queue_drops_own = figures_.queue_drops_own;
   status_.queue_drops_bsm = figures_.queue_drops_bsm;
   status_.kernel_drops = figures_.kernel_drops;

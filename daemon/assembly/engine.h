@@ -46,6 +46,7 @@ class Outbox {
 struct ShellFigures {
   std::int64_t queue_drops_own = 0;
   std::int64_t queue_drops_bsm = 0;
+  std::int64_t images_replaced = 0;  ///< Told among the refusals.
   std::int64_t kernel_drops = -1;
   std::int64_t receive_buffer_bytes = -1;
   std::vector<wire::StageLatency> latencies;

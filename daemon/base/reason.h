@@ -33,6 +33,7 @@ enum class Reason : std::uint8_t {
   // Camera.
   kNoDetector,
   kBadImage,
+  kImageReplaced,  ///< A newer picture of the same camera came before the detector had time.
   // V2V.
   kBsmRange,        ///< A raw value J2735 does not define.
   kBsmUnavailable,  ///< Position, speed, heading or time missing: nothing to use.

@@ -36,6 +36,10 @@ Result<CameraImage> ImageFromWire(camera_image_t&& message, const CameraConfig& 
   const bool has_size = message.width_px >= 1 && message.width_px <= kMaxImageSide_px &&
                         message.height_px >= 1 && message.height_px <= kMaxImageSide_px;
   if (!encoding || !has_size || message.data.empty()) return Reason::kBadImage;
+  // Pixels of another resolution than the intrinsics are for would mean other angles.
+  if (message.width_px != camera.image_width_px || message.height_px != camera.image_height_px) {
+    return Reason::kOutOfRange;
+  }
   const std::size_t pixels =
       static_cast<std::size_t>(message.width_px) * static_cast<std::size_t>(message.height_px);
   const std::size_t bytes_per_pixel = *encoding == ImageEncoding::kBgr8 ? 3 : 1;
@@ -68,7 +72,7 @@ std::vector<InputChannel> InputChannels(const VehicleConfig& vehicle, const Chan
     const CameraConfig& camera = vehicle.cameras[i];
     std::string name = names.camera_prefix + camera.name;
     if (camera.source == CameraSource::kImage) name += names.image_suffix;
-    if (camera.source == CameraSource::kDetected) name += names.detected_suffix;
+    if (camera.source == CameraSource::kDetected) name = DetectedChannel(names, camera);
     const auto kind =
         camera.source == CameraSource::kImage ? InputKind::kCameraImage : InputKind::kCameraBoxes;
     channels.push_back({name, kind, static_cast<int>(i), camera.period_s});
@@ -76,6 +80,10 @@ std::vector<InputChannel> InputChannels(const VehicleConfig& vehicle, const Chan
   channels.push_back({names.ego_gnss, InputKind::kGnss, 0, kGnssPeriod_s});
   channels.push_back({names.bsm, InputKind::kBsm, 0, 0.0});
   return channels;
+}
+
+std::string DetectedChannel(const ChannelNames& names, const CameraConfig& camera) {
+  return names.camera_prefix + camera.name + names.detected_suffix;
 }
 
 InputDecoder::InputDecoder(const VehicleConfig& vehicle, const ChannelNames& names)

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "daemon/base/result.h"
+#include "daemon/data/camera_image.h"
 #include "daemon/data/input.h"
 #include "daemon/data/vehicle.h"
-#include "daemon/wire/camera_image.h"
 #include "daemon/wire/channels.h"
 
 namespace v2vouch::wire {
@@ -29,6 +29,9 @@ struct InputChannel {
 /// Every input channel of a vehicle: ego motion, GNSS, radars, cameras (one channel each, as the
 /// camera's `source` says), BSMs.
 std::vector<InputChannel> InputChannels(const VehicleConfig& vehicle, const ChannelNames& names);
+
+/// Where what our detector saw through `camera` is published: CAMERA_<NAME>_DETECTED.
+std::string DetectedChannel(const ChannelNames& names, const CameraConfig& camera);
 
 /// From the bytes of a channel to checked data: codec, then content (sensor_conversion,
 /// bsm_conversion). Pure.

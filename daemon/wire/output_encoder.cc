@@ -182,12 +182,12 @@ void EncodeVerdict(const BsmVerdict& verdict, std::vector<std::uint8_t>& bytes) 
   Encode(to, bytes);
 }
 
-void EncodeDetections(const CameraDetections& detections, const std::string& sensor,
+void EncodeDetections(const CameraDetections& detections, const CameraConfig& camera,
                       std::vector<std::uint8_t>& bytes) {
   camera_detections_t to{};
-  to.utime = ToMicros(detections.stamp);
+  to.utime = ToMicros(detections.stamp - FromSeconds(camera.clock_offset_s));
   to.seq = detections.seq;
-  to.sensor = Name(sensor);
+  to.sensor = Name(camera.name);
   to.image_width_px = detections.image_width_px;
   to.image_height_px = detections.image_height_px;
   for (const CameraBox& from : detections.boxes) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/data/outputs.h"
+#include "daemon/data/vehicle.h"
 #include "daemon/wire/status.h"
 #include "v2vouch/track_list_t.hpp"
 
@@ -23,7 +24,8 @@ track_list_t ToWire(const TrackList& list);
 void EncodeList(const TrackList& list, std::vector<std::uint8_t>& bytes);
 void EncodeReport(const MisbehaviorReport& report, std::vector<std::uint8_t>& bytes);
 void EncodeVerdict(const BsmVerdict& verdict, std::vector<std::uint8_t>& bytes);
-void EncodeDetections(const CameraDetections& detections, const std::string& sensor,
+/// As the camera `camera` would have told them itself: its clock offset taken off the stamp again.
+void EncodeDetections(const CameraDetections& detections, const CameraConfig& camera,
                       std::vector<std::uint8_t>& bytes);
 void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes);
 void EncodeCalibration(const CalibrationInForce& calibration, std::vector<std::uint8_t>& bytes);

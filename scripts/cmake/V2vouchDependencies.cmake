@@ -21,3 +21,5 @@ find_package(GeographicLib REQUIRED)
 if(NOT TARGET yaml-cpp::yaml-cpp)
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
 endif()
+
+include(V2vouchOpenCv)

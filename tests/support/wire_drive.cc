@@ -48,9 +48,9 @@ WireMessage Encode(const RadarScan& scan, const VehicleConfig& vehicle) {
 }
 
 WireMessage Encode(const CameraDetections& boxes, const VehicleConfig& vehicle) {
-  const std::string& name = vehicle.cameras[static_cast<std::size_t>(boxes.camera)].name;
-  WireMessage result{"CAMERA_" + name, {}, boxes.stamp};
-  wire::EncodeDetections(boxes, name, result.bytes);
+  const CameraConfig& camera = vehicle.cameras[static_cast<std::size_t>(boxes.camera)];
+  WireMessage result{"CAMERA_" + camera.name, {}, boxes.stamp};
+  wire::EncodeDetections(boxes, camera, result.bytes);
   return result;
 }
 

@@ -57,6 +57,7 @@ TEST(LatencyMeter, ReportsNearestRankAndStartsAgain) {
 VehicleConfig VehicleWithPictures() {
   VehicleConfig vehicle;
   vehicle.cameras[0].source = CameraSource::kImage;
+  vehicle.cameras[0].image_width_px = vehicle.cameras[0].image_height_px = 2;
   return vehicle;
 }
 
@@ -79,7 +80,7 @@ Arrival Picture(std::int64_t seq) {
 // Sees one box in every picture once it may go on.
 class GatedDetector final : public ObjectDetector {
  public:
-  Result<CameraDetections> Detect(const wire::CameraImage& image) override {
+  Result<CameraDetections> Detect(const CameraImage& image) override {
     std::unique_lock lock(mutex_);
     ++looks_;
     changed_.notify_all();

@@ -306,7 +306,8 @@ TEST(Engine, PicturesWithoutADetectorAreRefusedByName) {
   camera_image_t image{};
   image.utime = 1'700'000'000'000'000;
   image.sensor = "FRONT";
-  image.width_px = image.height_px = 16;
+  image.width_px = 1280;
+  image.height_px = 720;
   image.encoding = "jpeg";
   image.data = {1, 2, 3};
   image.num_bytes = 3;

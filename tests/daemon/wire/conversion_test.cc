@@ -481,8 +481,12 @@ TEST(OutputEncoder, OurOwnDecoderTakesWhatWeWrite) {
   EXPECT_EQ(Decode<calibration_t>(bytes)->parameters[0].verdict, "PRIOR");
   CameraDetections detections;
   detections.boxes.resize(2);
-  EncodeDetections(detections, "FRONT", bytes);
+  CameraConfig camera;
+  camera.clock_offset_s = 0.25;
+  detections.stamp = FromMicros(kUtime) + std::chrono::milliseconds(250);
+  EncodeDetections(detections, camera, bytes);
   EXPECT_EQ(Decode<camera_detections_t>(bytes)->boxes.size(), 2u);
+  EXPECT_EQ(Decode<camera_detections_t>(bytes)->utime, kUtime);  // Added again when read back.
 }
 
 TEST(InputDecoder, KnowsTheChannelsOfTheVehicle) {
@@ -515,6 +519,8 @@ TEST(InputDecoder, KnowsTheChannelsOfTheVehicle) {
 TEST(InputDecoder, RawPicturesMustHaveTheBytesTheirSizeTakes) {
   VehicleConfig vehicle;
   vehicle.cameras[0].source = CameraSource::kImage;
+  vehicle.cameras[0].image_width_px = 4;
+  vehicle.cameras[0].image_height_px = 2;
   const InputDecoder decoder(vehicle, ChannelNames{});
   camera_image_t image{};
   image.utime = kUtime;
@@ -538,6 +544,10 @@ TEST(InputDecoder, RawPicturesMustHaveTheBytesTheirSizeTakes) {
   EXPECT_TRUE(refused("bgr8", 8));
   EXPECT_TRUE(refused("jpeg", 0));
   EXPECT_TRUE(refused("png", 24));
+  image.width_px = 2;  // As many bytes, but not the picture that the intrinsics are for.
+  image.height_px = 4;
+  EXPECT_TRUE(refused("mono8", 8));
+  EXPECT_TRUE(refused("jpeg", 5));
 }
 
 }  // namespace

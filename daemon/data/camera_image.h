@@ -6,7 +6,7 @@
 
 #include "daemon/data/input.h"
 
-namespace v2vouch::wire {
+namespace v2vouch {
 
 enum class ImageEncoding { kJpeg, kMono8, kBgr8 };
 
@@ -20,4 +20,4 @@ struct CameraImage : MessageHeader {
   std::vector<std::uint8_t> bytes;
 };
 
-}  // namespace v2vouch::wire
+}  // namespace v2vouch

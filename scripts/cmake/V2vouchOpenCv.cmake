@@ -1,0 +1,16 @@
+# v2vouch::opencv: the four OpenCV libraries we use, and no more. Debian's OpenCVConfig.cmake comes
+# with libopencv-dev only, which pulls in Qt and GTK; the single libraries need neither.
+find_path(V2VOUCH_OPENCV_INCLUDE opencv2/dnn.hpp PATH_SUFFIXES opencv4 REQUIRED)
+add_library(v2vouch_opencv INTERFACE)
+target_include_directories(v2vouch_opencv SYSTEM INTERFACE "${V2VOUCH_OPENCV_INCLUDE}")
+foreach(part dnn imgcodecs imgproc core)
+  find_library(V2VOUCH_OPENCV_${part} opencv_${part} REQUIRED)
+  target_link_libraries(v2vouch_opencv INTERFACE "${V2VOUCH_OPENCV_${part}}")
+endforeach()
+add_library(v2vouch::opencv ALIAS v2vouch_opencv)
+
+# For tests alone: OpenCV's own camera model.
+find_library(V2VOUCH_OPENCV_calib3d opencv_calib3d REQUIRED)
+add_library(v2vouch_opencv_calib3d INTERFACE)
+target_link_libraries(v2vouch_opencv_calib3d INTERFACE v2vouch_opencv "${V2VOUCH_OPENCV_calib3d}")
+add_library(v2vouch::opencv_calib3d ALIAS v2vouch_opencv_calib3d)
