@@ -95,6 +95,7 @@ class Daemon {
     if (const auto* bytes = std::get_if<Arrival::Bytes>(&arrival.content)) {
       engine_.OnMessage(arrival.channel, *bytes, arrival.received, outbox_);
     } else if (const auto* boxes = std::get_if<CameraDetections>(&arrival.content)) {
+      image_to_boxes_.Add(arrival.looked);
       engine_.OnDetections(arrival.channel, *boxes, outbox_);
     } else {
       engine_.OnRefused(arrival.channel, std::get<Reason>(arrival.content));
@@ -142,12 +143,13 @@ class Daemon {
 
   void RefreshFigures() {
     const SocketFigures sockets = ReadSocketFigures();
-    engine_.SetShellFigures(
-        {.queue_drops_own = queue_.own_drops(),
-         .queue_drops_bsm = queue_.bsm_drops(),
-         .kernel_drops = sockets.kernel_drops,
-         .receive_buffer_bytes = sockets.receive_buffer_bytes,
-         .latencies = {queue_wait_.Report(), step_.Report(), input_to_list_.Report()}});
+    engine_.SetShellFigures({.queue_drops_own = queue_.own_drops(),
+                             .queue_drops_bsm = queue_.bsm_drops(),
+                             .images_replaced = detect_.replaced(),
+                             .kernel_drops = sockets.kernel_drops,
+                             .receive_buffer_bytes = sockets.receive_buffer_bytes,
+                             .latencies = {queue_wait_.Report(), step_.Report(),
+                                           input_to_list_.Report(), image_to_boxes_.Report()}});
   }
 
   // One line per reason and second at most.
@@ -213,6 +215,8 @@ class Daemon {
     summary_.queue_drops_own = queue_.own_drops();
     summary_.queue_drops_bsm = queue_.bsm_drops();
     summary_.refused = engine_.refusals();
+    summary_.refused[static_cast<std::size_t>(Reason::kImageReplaced)] +=
+        static_cast<std::uint64_t>(detect_.replaced());
     summary_.digest_local = engine_.digest_local();
     summary_.digest_priority = engine_.digest_priority();
     return summary_;
@@ -225,7 +229,8 @@ class Daemon {
   DetectThread detect_;
   LatencyMeter queue_wait_{"queue_wait"};
   LatencyMeter step_{"step"};
-  LatencyMeter input_to_list_{"input_to_list"};
+  LatencyMeter input_to_list_{"input_to_list"};  // From the network: its boxes to the list.
+  LatencyMeter image_to_boxes_{"image_to_boxes"};
   DaemonSummary summary_;
   ReasonCounts logged_{};
   std::int64_t logged_drops_ = 0;

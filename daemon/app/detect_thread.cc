@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/app/detect_thread.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <utility>
 
 namespace v2vouch {
+namespace {
+
+constexpr int kNice = 10;
+
+}  // namespace
 
 DetectThread::DetectThread(const wire::InputDecoder& decoder, ObjectDetector* detector,
                            MessageQueue& queue)
@@ -21,9 +29,9 @@ DetectThread::~DetectThread() {
 void DetectThread::Offer(Arrival picture) {
   {
     const std::lock_guard lock(mutex_);
-    if (slots_.contains(picture.channel)) ++replaced_;
-    std::string channel = picture.channel;
-    slots_.insert_or_assign(std::move(channel), std::move(picture));
+    Slot& slot = slots_[picture.channel];
+    if (slot.picture) ++replaced_;
+    slot.picture = std::move(picture);
   }
   has_some_.notify_one();
 }
@@ -34,20 +42,35 @@ std::int64_t DetectThread::replaced() const {
 }
 
 void DetectThread::Run() {
+  // Linux keeps a nice value per thread. Where it may not be set, the network competes.
+  static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
   std::unique_lock lock(mutex_);
   while (true) {
-    has_some_.wait(lock, [this] { return must_stop_ || !slots_.empty(); });
+    std::optional<Arrival> picture;
+    has_some_.wait(lock, [&] { return must_stop_ || (picture = NextPicture()); });
     if (must_stop_) return;
-    Arrival picture = std::move(slots_.begin()->second);
-    slots_.erase(slots_.begin());
     lock.unlock();
-    picture.content = Look(picture);
-    queue_.PushOwn(std::move(picture));
+    picture->content = Look(*picture);
+    const auto now = std::chrono::steady_clock::now();
+    picture->looked = now - picture->arrived;
+    picture->arrived = now;
+    queue_.PushOwn(std::move(*picture));
     lock.lock();
   }
 }
 
+std::optional<Arrival> DetectThread::NextPicture() {
+  Slot* next = nullptr;
+  for (auto& [channel, slot] : slots_) {
+    if (slot.picture && (next == nullptr || slot.last_look < next->last_look)) next = &slot;
+  }
+  if (next == nullptr) return std::nullopt;
+  next->last_look = ++turn_;
+  return std::exchange(next->picture, std::nullopt);
+}
+
 Arrival::Content DetectThread::Look(const Arrival& picture) {
+  if (const auto* refusal = std::get_if<Reason>(&picture.content)) return *refusal;
   const auto* bytes = std::get_if<Arrival::Bytes>(&picture.content);
   const auto channel = decoder_.Find(picture.channel);
   if (bytes == nullptr || !channel) return Reason::kUnknownChannel;

@@ -4,24 +4,19 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "daemon/app/message_queue.h"
-#include "daemon/base/result.h"
+#include "daemon/detection/object_detector.h"
 #include "daemon/wire/input_decoder.h"
 
 namespace v2vouch {
 
-/// Finds vehicles and road users in a picture. Called from one thread.
-class ObjectDetector {
- public:
-  virtual ~ObjectDetector() = default;
-  /// Detections carry the picture's own stamp, seq and camera.
-  virtual Result<CameraDetections> Detect(const CameraImage& image) = 0;
-};
-
-/// Pictures to detections, beside the fusion thread, which never waits for it. Each camera has one
-/// slot; a newer picture replaces one that still waits.
+/// Pictures to detections, beside the fusion thread, which never waits for it and whose core it
+/// leaves when both want the same one (lower scheduling priority). Each camera has one slot, in
+/// which a newer picture replaces one that still waits; cameras take turns.
 class DetectThread {
  public:
   /// @param detector nullptr: every picture is refused with kNoDetector.
@@ -41,7 +36,15 @@ class DetectThread {
   MessageQueue& queue_;
   mutable std::mutex mutex_;
   std::condition_variable has_some_;
-  std::map<std::string, Arrival> slots_;
+  struct Slot {
+    std::optional<Arrival> picture;
+    std::uint64_t last_look = 0;  // Turn in which this camera was served last.
+  };
+  // The waiting picture of the camera that was served longest ago.
+  std::optional<Arrival> NextPicture();
+
+  std::map<std::string, Slot> slots_;
+  std::uint64_t turn_ = 0;
   std::int64_t replaced_ = 0;
   bool must_stop_ = false;
   std::thread thread_;

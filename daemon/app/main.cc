@@ -6,8 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <iostream>
+#include <memory>
 
 #include "daemon/app/daemon.h"
+#include "daemon/detection/network_detector.h"
 #include "daemon/io/lcm_bus.h"
 
 namespace {
@@ -23,6 +25,22 @@ Publishes TRACKS_LOCAL, TRACKS_PRIORITY, TRACKS_V2V, MISBEHAVIOR, CALIBRATION, V
 once a second, V2VOUCH_STATUS. Ends on Ctrl-C or SIGTERM.
 
 Exit codes: 0 ended on request; 1 something failed while running; 2 usage or configuration.)";
+
+// The camera network, where a camera wants one: pictures without a network help nobody.
+std::unique_ptr<v2vouch::ObjectDetector> LoadDetector(const v2vouch::DaemonConfig& config,
+                                                      std::vector<std::string>& problems) {
+  for (const v2vouch::CameraConfig& camera : config.perception.vehicle.cameras) {
+    if (camera.source != v2vouch::CameraSource::kImage) continue;
+    if (!config.detector.model.empty()) {
+      return v2vouch::NetworkDetector::Load(config.detector, problems);
+    }
+    problems.push_back("camera " + camera.name +
+                       " has source: image, but detector.model names no network; a smart camera's "
+                       "boxes need none (source: boxes)");
+    return nullptr;
+  }
+  return nullptr;
+}
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -73,6 +91,8 @@ int main(int argc, char** argv) {
     if (!v2vouch::IsLcmUrl(given))
       problems.push_back("LCM URL \"" + given + "\": unknown provider");
   }
+  std::unique_ptr<v2vouch::ObjectDetector> detector;
+  if (problems.empty() && !prints_config) detector = LoadDetector(config, problems);
   for (const std::string& problem : problems) std::cerr << problem << '\n';
   if (!problems.empty()) return 2;
   if (prints_config) {
@@ -82,10 +102,17 @@ int main(int argc, char** argv) {
 
   spdlog::set_default_logger(spdlog::stderr_logger_mt("v2vouchd"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e level=%l %v");
+  if (detector) {
+    spdlog::info("event=network model=\"{}\" input={}x{} threads={}", config.detector.model,
+                 config.detector.input_width_px, config.detector.input_height_px,
+                 config.detector.threads);
+  } else {
+    spdlog::info("event=no_network hint=\"boxes come from smart cameras\"");
+  }
   std::signal(SIGINT, RequestStop);
   std::signal(SIGTERM, RequestStop);
   try {
-    PrintSummary(v2vouch::RunDaemon(config, nullptr, [] { return stop_requested != 0; }));
+    PrintSummary(v2vouch::RunDaemon(config, detector.get(), [] { return stop_requested != 0; }));
   } catch (const std::exception& error) {
     spdlog::critical("event=failed what=\"{}\"", error.what());
     return 1;

@@ -25,7 +25,8 @@ struct Arrival {
   std::string channel;
   Content content;
   Timestamp received{};
-  std::chrono::steady_clock::time_point arrived{};
+  std::chrono::steady_clock::time_point arrived{};  ///< From the detector: when it was done.
+  std::chrono::steady_clock::duration looked{};     ///< From the detector: since the picture came.
   std::uint64_t number = 0;  ///< Given by the queue: the one total order of everything received.
 };
 

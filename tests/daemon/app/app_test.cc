@@ -61,16 +61,17 @@ VehicleConfig VehicleWithPictures() {
   return vehicle;
 }
 
-Arrival Picture(std::int64_t seq) {
+Arrival Picture(std::int64_t seq, const std::string& sensor = "FRONT") {
   camera_image_t image{};
   image.utime = 1'700'000'000'000'000;
   image.seq = seq;
-  image.sensor = "FRONT";
+  image.sensor = sensor;
   image.width_px = image.height_px = 2;
   image.encoding = "mono8";
   image.data.assign(4, 0);
   image.num_bytes = 4;
-  Arrival arrival = Named("CAMERA_FRONT_IMAGE");
+  Arrival arrival = Named("CAMERA_" + sensor + "_IMAGE");
+  arrival.arrived = std::chrono::steady_clock::now();
   Arrival::Bytes bytes;
   wire::Encode(image, bytes);
   arrival.content = bytes;
@@ -128,6 +129,29 @@ TEST(DetectThread, NewestPictureWinsWhileTheDetectorIsBusy) {
   }
 }
 
+// A camera that floods must not keep the network from looking through the others.
+TEST(DetectThread, CamerasTakeTurns) {
+  VehicleConfig vehicle = VehicleWithPictures();
+  vehicle.cameras.push_back(vehicle.cameras[0]);
+  vehicle.cameras[1].name = "REAR";
+  const wire::InputDecoder decoder(vehicle, wire::ChannelNames{});
+  MessageQueue queue(10, 10);
+  GatedDetector detector;
+  DetectThread thread(decoder, &detector, queue);
+  thread.Offer(Picture(1));
+  detector.WaitForLook();
+  thread.Offer(Picture(2));
+  thread.Offer(Picture(3, "REAR"));
+  thread.Offer(Picture(4));
+  detector.Open();
+  for (const char* channel : {"CAMERA_FRONT_IMAGE", "CAMERA_REAR_IMAGE", "CAMERA_FRONT_IMAGE"}) {
+    const auto arrival = queue.Pop(10s);
+    ASSERT_TRUE(arrival);
+    EXPECT_EQ(arrival->channel, channel);
+    EXPECT_GT(arrival->looked.count(), 0);
+  }
+}
+
 TEST(DetectThread, RefusalsAndExceptionsBecomeReasons) {
   const wire::InputDecoder decoder(VehicleWithPictures(), wire::ChannelNames{});
   MessageQueue queue(10, 10);
@@ -144,6 +168,9 @@ TEST(DetectThread, RefusalsAndExceptionsBecomeReasons) {
   Arrival damaged = Picture(1);
   std::get<Arrival::Bytes>(damaged.content).pop_back();
   EXPECT_EQ(reason_of(&detector, damaged), Reason::kBadLength);
+  Arrival large = Picture(1);
+  large.content = Reason::kTooLarge;  // Refused on the way: the reason stays what it was.
+  EXPECT_EQ(reason_of(&detector, large), Reason::kTooLarge);
 }
 
 }  // namespace
