@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "daemon/assembly/engine.h"
@@ -26,15 +27,48 @@ bool IsOurOutput(const std::string& channel, const DaemonConfig& config) {
       channel == names.bsm_verdict || channel == names.config || channel == names.calibration) {
     return true;
   }
-  // What our detector saw is made again where it looks at the pictures now.
-  for (const CameraConfig& camera : config.perception.vehicle.cameras) {
-    if (camera.source == CameraSource::kImage &&
-        channel == names.camera_prefix + camera.name + names.detected_suffix) {
-      return true;
-    }
-  }
   return false;
 }
+
+// What the network saw is taken from the log; the pictures only pass through.
+DaemonConfig WithoutNetwork(DaemonConfig config) {
+  for (CameraConfig& camera : config.perception.vehicle.cameras) {
+    if (camera.source == CameraSource::kImage) camera.source = CameraSource::kDetected;
+  }
+  return config;
+}
+
+// Pictures that came without what a network saw in them, over all cameras.
+class UnseenPictures {
+ public:
+  explicit UnseenPictures(const DaemonConfig& config) {
+    const wire::ChannelNames& names = config.lcm.channels;
+    for (const CameraConfig& camera : config.perception.vehicle.cameras) {
+      if (camera.source != CameraSource::kDetected) continue;
+      pictures_[names.camera_prefix + camera.name + names.image_suffix] = cameras_;
+      detections_[wire::DetectedChannel(names, camera)] = cameras_++;
+    }
+    balance_.resize(cameras_, 0);
+  }
+  void Note(const std::string& channel) {
+    if (const auto found = pictures_.find(channel); found != pictures_.end()) {
+      ++balance_[found->second];
+    } else if (const auto seen = detections_.find(channel); seen != detections_.end()) {
+      --balance_[seen->second];
+    }
+  }
+  [[nodiscard]] std::int64_t count() const {
+    std::int64_t sum = 0;
+    for (const std::int64_t each : balance_) sum += std::max<std::int64_t>(0, each);
+    return sum;
+  }
+
+ private:
+  std::map<std::string, std::size_t> pictures_;
+  std::map<std::string, std::size_t> detections_;
+  std::size_t cameras_ = 0;
+  std::vector<std::int64_t> balance_;
+};
 
 bool IsSameFile(const std::string& a, const std::string& b) {
   std::error_code ignored;
@@ -50,8 +84,9 @@ void WriteAll(const Outbox& outbox, Timestamp at, LogWriter* writer) {
 
 }  // namespace
 
-bool Replay(const std::string& in, const std::string& out, const DaemonConfig& config,
+bool Replay(const std::string& in, const std::string& out, const DaemonConfig& given,
             const std::function<bool(double)>& progress, ReplayResult& result, std::string& error) {
+  const DaemonConfig config = WithoutNetwork(given);
   const auto reader = LogReader::Open(in, error);
   if (!reader) return false;
   std::unique_ptr<LogWriter> writer;
@@ -66,6 +101,8 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& c
 
   const auto started = SteadyClock::now();
   Engine engine(config);
+  UnseenPictures unseen(config);
+  Engine engine(config, std::make_unique<NullBiasEstimator>());
   Outbox outbox;
   LogEvent event;
   Timestamp first{};
@@ -83,6 +120,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& c
       error = "stopped";
       return false;
     }
+    unseen.Note(event.channel);
     if (IsOurOutput(event.channel, config)) {
       ++result.old_outputs;
       continue;
@@ -103,6 +141,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& c
   result.wall_seconds = std::chrono::duration<double>(SteadyClock::now() - started).count();
   result.log_seconds = ToSeconds(last - first);
   result.damaged = reader->damaged();
+  result.unseen_pictures = unseen.count();
   result.accepted = engine.accepted();
   result.refused = engine.refusals();
   result.digest_local = engine.digest_local();

@@ -18,9 +18,12 @@ struct ReplayResult {
   std::int64_t accepted = 0;
   std::int64_t copied = 0;  ///< Of channels that are none of ours (TRUTH, ...), passed through.
   std::int64_t old_outputs = 0;  ///< Recorded earlier by a daemon; left out.
-  std::int64_t damaged = 0;      ///< Damaged stretches of the log, skipped.
-  std::int64_t lists = 0;        ///< LOCAL lists published.
-  double log_seconds = 0.0;      ///< First to last event.
+  /// Of cameras with `source: image` or `detected`: pictures for which the log holds nothing on
+  /// CAMERA_<NAME>_DETECTED. v2vouch-detect --log adds it.
+  std::int64_t unseen_pictures = 0;
+  std::int64_t damaged = 0;  ///< Damaged stretches of the log, skipped.
+  std::int64_t lists = 0;    ///< LOCAL lists published.
+  double log_seconds = 0.0;  ///< First to last event.
   double wall_seconds = 0.0;
   std::vector<double> step_us;  ///< Wall time of each input, decode to encode.
   ReasonCounts refused{};
@@ -36,7 +39,8 @@ struct ReplayResult {
 /// Feeds the log at `in` to the core and writes all of its events with the outputs to `out` (empty:
 /// nothing is written). An output carries the log time of the event that caused it and stands right
 /// behind it. Recorded outputs of an earlier run are dropped and counted; every other channel goes
-/// through untouched.
+/// through untouched. No network runs: a camera with `source: image` is taken as `detected`, so the
+/// boxes that were recorded with its pictures are the input.
 /// @param progress called now and then with the share done, 0..1; returning false stops the run.
 /// @return false with `error` set when a file cannot be read or written, or when stopped.
 bool Replay(const std::string& in, const std::string& out, const DaemonConfig& config,

@@ -53,6 +53,7 @@ std::string JsonReport(const ReplayResult& result) {
       {"accepted", result.accepted},
       {"copied", result.copied},
       {"old_outputs", result.old_outputs},
+      {"unseen_pictures", result.unseen_pictures},
       {"damaged", result.damaged},
       {"lists", result.lists},
       {"log_seconds", result.log_seconds},
@@ -73,6 +74,10 @@ std::string TextReport(const ReplayResult& result) {
   text += CountLine("accepted", result.accepted);
   text += CountLine("passed through", result.copied);
   if (result.old_outputs > 0) text += CountLine("old outputs dropped", result.old_outputs);
+  if (result.unseen_pictures > 0) {
+    text += CountLine("pictures unseen", result.unseen_pictures);
+    text += "                      (v2vouch-detect --log adds what the network sees)\n";
+  }
   if (result.damaged > 0) text += CountLine("damaged stretches", result.damaged);
   text += CountLine("lists", result.lists);
   text += Line("log                   %.2f s", result.log_seconds);
