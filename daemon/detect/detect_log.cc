@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/detect/detect_log.h"
+
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "daemon/io/event_log.h"
+#include "daemon/wire/input_decoder.h"
+#include "daemon/wire/output_encoder.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr std::int64_t kEventsPerProgress = 64;
+
+Result<CameraDetections> Look(const wire::InputDecoder& decoder, std::size_t channel,
+                              const LogEvent& event, ObjectDetector& detector) {
+  ReasonCounts unused{};
+  const auto decoded = decoder.Decode(channel, event.bytes, event.received, unused);
+  if (!decoded) return decoded.reason();
+  const auto* image = std::get_if<CameraImage>(&*decoded);
+  if (image == nullptr) return Reason::kBadImage;
+  try {
+    return detector.Detect(*image);
+  } catch (const std::exception&) {
+    return Reason::kBadImage;
+  }
+}
+
+}  // namespace
+
+bool DetectLog(const std::string& in, const std::string& out, const DaemonConfig& config,
+               ObjectDetector& detector, const std::function<bool(double)>& progress,
+               DetectLogResult& result, std::string& error) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(in, out, ignored)) {
+    error = out + ": is the log that is being read";
+    return false;
+  }
+  const auto reader = LogReader::Open(in, error);
+  if (!reader) return false;
+  const auto writer = LogWriter::Create(out, error);
+  if (!writer) return false;
+
+  const VehicleConfig& vehicle = config.perception.vehicle;
+  const wire::InputDecoder decoder(vehicle, config.lcm.channels);
+  std::set<std::string> detected;
+  for (const CameraConfig& camera : vehicle.cameras) {
+    if (camera.source != CameraSource::kImage) continue;
+    detected.insert(wire::DetectedChannel(config.lcm.channels, camera));
+  }
+  LogEvent event;
+  std::vector<std::uint8_t> bytes;
+  while (reader->Next(event)) {
+    if (++result.events % kEventsPerProgress == 0 && !progress(reader->progress())) {
+      error = "stopped";
+      return false;
+    }
+    if (detected.contains(event.channel)) continue;
+    writer->Write(event.received, event.channel, event.bytes);
+    const auto channel = decoder.Find(event.channel);
+    if (!channel || decoder.channels()[*channel].kind != wire::InputKind::kCameraImage) continue;
+    ++result.pictures;
+    const auto detections = Look(decoder, *channel, event, detector);
+    if (!detections) {
+      ++result.refused[static_cast<std::size_t>(detections.reason())];
+      continue;
+    }
+    result.boxes += static_cast<std::int64_t>(detections->boxes.size());
+    const auto& camera = vehicle.cameras[static_cast<std::size_t>(detections->camera)];
+    wire::EncodeDetections(*detections, camera, bytes);
+    writer->Write(event.received, wire::DetectedChannel(config.lcm.channels, camera), bytes);
+  }
+  return writer->Close(error);
+}
+
+}  // namespace v2vouch
