@@ -104,7 +104,8 @@ int LookAtFiles(const Options& options, NetworkDetector& detector) {
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started)
             .count();
     if (!options.truth_path.empty()) {
-      const auto found = truth.find(fs::path(image).lexically_relative(folder).string());
+      auto found = truth.find(fs::path(image).lexically_relative(folder).string());
+      if (found == truth.end()) found = truth.find(image);
       if (found == truth.end()) {
         return Complain(image + ": has no row in " + options.truth_path, kFailed);
       }
