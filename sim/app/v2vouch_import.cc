@@ -11,6 +11,7 @@
 #include <string>
 
 #include "daemon/io/event_log.h"
+#include "sim/app/import_kitti.h"
 #include "sim/import/comma2k19.h"
 #include "sim/import/fcd.h"
 #include "sim/import/sumo_scenario.h"
@@ -25,6 +26,10 @@ constexpr const char* kExamples = R"(Examples:
   v2vouch-import comma2k19 DRIVE --out drive.lcm
       DRIVE holds radar_tracks.csv, ego_speed.csv, imu_fwd_right_down.csv, gnss_ublox.csv.
       Then: v2vouch-replay drive.lcm --config daemon/config/vehicle_comma2k19.yaml --out tracks.lcm
+  v2vouch-import kitti --labels label_02/0001.txt --calib calib/0001.txt --out kitti.lcm
+      KITTI tracking: labelled boxes with noise as a smart camera's. --images image_02/0001 puts the
+      pictures in instead, for v2vouch-detect --log.
+      Then: v2vouch-replay kitti.lcm --config daemon/config/vehicle_kitti.yaml --out tracks.lcm
   v2vouch-import sumo-fcd fcd.csv.gz --ego auto --v2v-share 0.5 --out-scenario cologne
       Then: v2vouch-sim run cologne/scenario.yaml --seed 1 --out cologne.lcm
 
@@ -170,6 +175,34 @@ int Run(int argc, char** argv) {
   sumo->add_option("--seed", traffic.seed, "draws the vans")->capture_default_str();
   sumo->add_flag("--json", as_json, "figures as one line of JSON");
 
+  KittiRequest street;
+  CLI::App* const kitti =
+      app.add_subcommand("kitti", "a KITTI tracking sequence (labels, pictures) -> LCM log");
+  kitti->add_option("--labels", street.labels, "label file of the sequence (label_02)");
+  kitti->add_option("--calib", street.calibration, "calibration file with P2")->required();
+  kitti->add_option("--images", street.images, "folder of its pictures: no boxes, CAMERA_*_IMAGE");
+  kitti->add_option("--oxts", street.oxts,
+                    "oxts file: the ego's speed and yaw rate (default: from what stands still "
+                    "among the labels)");
+  kitti->add_flag("--ego-stands", street.ego_stands, "do not look for the ego's motion in labels");
+  kitti->add_option("--ego-speed", street.ego_speed_mps, "m/s, where nothing tells it")
+      ->check(CLI::Range(-20.0, 60.0))
+      ->capture_default_str();
+  kitti->add_option("--edge-sigma", street.options.edge_sigma_px, "noise of a box's edges, pixels")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
+  kitti
+      ->add_option("--detection-probability", street.options.detection_probability,
+                   "of a visible object, per frame")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  kitti->add_option("--clutter", street.options.clutter_per_image, "false boxes per frame")
+      ->check(CLI::Range(0.0, 20.0))
+      ->capture_default_str();
+  kitti->add_option("--seed", street.options.seed, "draws the noise")->capture_default_str();
+  kitti->add_option("--out", street.out, "log to write")->required();
+  kitti->add_flag("--json", street.as_json, "figures as one line of JSON");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -177,6 +210,7 @@ int Run(int argc, char** argv) {
   }
   drive.gnss_latency_s = latency_ms * 1e-3;
   traffic.has_buildings = !no_buildings;
+  if (kitti->parsed()) return ImportKitti(street);
   return comma->parsed() ? ImportComma2k19(in, out, drive, as_json)
                          : ImportSumo(in, out, traffic, as_json);
 }

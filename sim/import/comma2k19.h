@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/time.h"
+#include "sim/import/imported_event.h"
 
 namespace v2vouch::sim {
 
@@ -54,13 +54,6 @@ struct Comma2k19Options {
   /// From measurement to output of a fix. Best fit of this receiver's positions against the
   /// collection's post-processed pose.
   double gnss_latency_s = 0.06;
-};
-
-/// One encoded message and when it reached the recorder.
-struct ImportedEvent {
-  Timestamp received{};
-  std::string channel;
-  std::vector<std::uint8_t> bytes;
 };
 
 /// RADAR_<NAME> (one scan per radar cycle, sensor objects with their slot as track_id), EGO_MOTION

@@ -103,5 +103,50 @@ TEST(V2vouchImport, AFaultyTableNamesItsLine) {
   EXPECT_THAT(finished.output, HasSubstr("fcd.csv:3: x_m = \"one\" is not a number"));
 }
 
+// Three standing cars that the ego nears at 10 m/s.
+std::string NearingLabels() {
+  std::string text;
+  for (int k = 0; k < 20; ++k) {
+    for (int track = 0; track < 3; ++track) {
+      text += std::to_string(k) + " " + std::to_string(track) +
+              " Car 0 0 0 600 180 640 210 1.5 1.8 4.2 " + std::to_string(4 * track - 6) + " 1.6 " +
+              std::to_string(40 + 5 * track - k) + " -1.57\n";
+    }
+  }
+  return text;
+}
+
+TEST(V2vouchImport, KittiLabelsBecomeALog) {
+  const ScratchFolder folder("import_app");
+  const std::string calibration =
+      " --calib " + folder.Write("calib.txt", "P2: 721 0 609 45 0 721 172 0 0 0 1 0\n");
+  const std::string labels = " --labels " + folder.Write("labels.txt", NearingLabels());
+  const std::string out = " --out " + folder.path() + "/kitti.lcm";
+  const Finished done = Import("kitti --json" + labels + calibration + out);
+  ASSERT_EQ(done.code, 0) << done.output;
+  EXPECT_THAT(done.output, HasSubstr("\"frames\":20"));
+  EXPECT_THAT(done.output, HasSubstr("\"ego_from\":\"labels\""));
+  EXPECT_THAT(done.output, HasSubstr("\"CAMERA_FRONT\":20"));
+
+  EXPECT_EQ(Import("kitti" + labels + out).code, 2);  // No calibration.
+  EXPECT_THAT(Import("kitti" + calibration + out).output, HasSubstr("--labels, --images or both"));
+  const Finished empty = Import("kitti" + calibration + out + " --images " + folder.path());
+  EXPECT_EQ(empty.code, 1);
+  EXPECT_THAT(empty.output, HasSubstr("holds no numbered picture"));
+}
+
+// Real pictures into a log, sizes and all.
+TEST(V2vouchImport, KittiPicturesBecomeALog) {
+  const auto images = ReferenceData("images/kitti_seq");
+  if (!std::filesystem::exists(images)) GTEST_SKIP() << "SKIPPED: no pictures under V2VOUCH_DATA";
+  const ScratchFolder folder("import_app");
+  const Finished done =
+      Import("kitti --json --ego-speed 5 --images " + images.string() + " --calib " +
+             ReferenceData("images/kitti_tracking/calib_0001.txt").string() + " --out " +
+             folder.path() + "/pictures.lcm");
+  ASSERT_EQ(done.code, 0) << done.output;
+  EXPECT_THAT(done.output, HasSubstr("\"CAMERA_FRONT_IMAGE\":20"));
+}
+
 }  // namespace
 }  // namespace v2vouch::sim
