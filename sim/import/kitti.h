@@ -57,10 +57,10 @@ struct KittiMotion {
 bool ReadKittiOxts(const std::string& path, std::vector<KittiMotion>& motion, std::string& error);
 
 /// Where there is no oxts: the motion against what stands still among the labelled objects. Between
-/// frames k and k + 1 an object that stands, at p in the car's frame (x forward, y left, origin at
-/// the rear axle), moves by
+/// frames k and k + 1 an object that stands moves from p to p' in the car's frame (x forward, y
+/// left, origin at the rear axle) by
 ///
-///     p' - p = [ -s + y a, -x a ],   s = way, a = turn
+///     p' - p = [ -s + y a, -x a ],   (x, y) = (p + p') / 2,   s = way, a = turn
 ///
 /// Fitted by iterated least squares to the objects that agree within 0.25 m, starting from the
 /// motion before, or from that of the two objects with which most others agree. Measured where at

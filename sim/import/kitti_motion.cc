@@ -23,13 +23,13 @@ struct Step {
 };
 
 struct Move {
-  Eigen::Vector2d from;
+  Eigen::Vector2d middle;  // Of both places: makes the step's formula right to third order.
   Eigen::Vector2d by;
 };
 
 Eigen::Vector2d Residual(const Move& move, const Step& step) {
-  return move.by - Eigen::Vector2d(-step.way_m + move.from.y() * step.turn_rad,
-                                   -move.from.x() * step.turn_rad);
+  return move.by - Eigen::Vector2d(-step.way_m + move.middle.y() * step.turn_rad,
+                                   -move.middle.x() * step.turn_rad);
 }
 
 // Least squares over the moves for which `counts` holds.
@@ -41,7 +41,7 @@ std::optional<Step> Solve(const std::vector<Move>& moves, std::size_t least, con
   for (const Move& move : moves) {
     if (!counts(move)) continue;
     Eigen::Matrix2d A;
-    A << -1.0, move.from.y(), 0.0, -move.from.x();
+    A << -1.0, move.middle.y(), 0.0, -move.middle.x();
     N += A.transpose() * A;
     b += A.transpose() * move.by;
     ++used;
@@ -110,7 +110,8 @@ std::vector<std::optional<Step>> StepsOf(const std::vector<Places>& frames) {
     std::vector<Move> moves;
     for (const auto& [track, from] : frames[k]) {
       const auto to = frames[k + 1].find(track);
-      if (to != frames[k + 1].end()) moves.push_back({from, to->second - from});
+      if (to != frames[k + 1].end())
+        moves.push_back({0.5 * (from + to->second), to->second - from});
     }
     if (before) steps[k] = FitFrom(*before, moves);
     if (!steps[k]) steps[k] = FitFrom(Start(moves), moves);
