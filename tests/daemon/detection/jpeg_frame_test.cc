@@ -77,7 +77,7 @@ TEST(JpegFrame, ScansWithoutEndAreRefused) {
   Bytes bytes = Jpeg(16, 16, CV_8UC3, true);
   const std::size_t scan = Find(bytes, 0xDA);
   const Bytes again(bytes.begin() + static_cast<std::ptrdiff_t>(scan), bytes.end() - 2);
-  bytes.resize(bytes.size() - 2);
+  bytes.erase(bytes.end() - 2, bytes.end());
   for (int i = 0; i < 100; ++i) bytes.insert(bytes.end(), again.begin(), again.end());
   bytes.insert(bytes.end(), {0xFF, 0xD9});
   EXPECT_FALSE(ReadJpegFrame(bytes));

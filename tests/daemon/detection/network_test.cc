@@ -103,6 +103,8 @@ TEST(Network, OnnxOfYoloxShapeSeesWhiteCells) {
   config.input_width_px = 128;
   config.input_height_px = 64;
   config.fit = PictureFit::kLetterbox;
+  config.clahe_clip = 0.0;
+  config.refine_bottom = false;
   config.min_score = 0.8;
   config.classes = {{1, ObjectClass::kCar}};
   config.model = folder.Write("tiny.onnx", TinyYolox(128, 64));
