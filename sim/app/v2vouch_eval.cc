@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "sim/annotation/annotate_log.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/report.h"
 #include "sim/evaluation/spoof_json.h"
@@ -43,6 +45,27 @@ bool Load(const std::string& path, v2vouch::evaluation::RunLog& log,
   if (v2vouch::evaluation::ReadRunLog(path, Progress("reading"), log, error, scope)) return true;
   std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());
   return false;
+}
+
+// A few frames of the first camera, where the log has its pictures.
+std::vector<v2vouch::evaluation::ReportPicture> PicturesOf(const std::string& log) {
+  constexpr int kPictures = 6;
+  v2vouch::sim::AnnotationRequest request;
+  request.log = log;
+  request.at_most = kPictures;
+  v2vouch::sim::AnnotationResult result;
+  std::vector<v2vouch::evaluation::ReportPicture> pictures;
+  std::string ignored;  // A log without camera has no such pictures; nothing is wrong with that.
+  const auto take = [&](v2vouch::Timestamp, const cv::Mat& picture) {
+    if (!result.has_images) return false;
+    v2vouch::evaluation::ReportPicture taken;
+    taken.caption = "frame " + std::to_string(result.pictures) + " of the report";
+    cv::imencode(".jpg", picture, taken.jpeg);
+    pictures.push_back(std::move(taken));
+    return true;
+  };
+  v2vouch::sim::AnnotateLog(request, take, result, ignored);
+  return pictures;
 }
 
 int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
@@ -126,7 +149,8 @@ int main(int argc, char** argv) {
   }
   if (!report_folder.empty()) {
     std::string error;
-    const std::string file = WriteReport(report_folder, *evaluation, paper.get(), error);
+    const std::string file =
+        WriteReport(report_folder, *evaluation, paper.get(), PicturesOf(log_path), error);
     if (file.empty()) {
       std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());
       return kFailed;

@@ -90,6 +90,23 @@ std::string CriticalError(const Evaluation& evaluation, std::size_t critical) {
   return Draw(plot);
 }
 
+// RFC 4648, section 4.
+std::string Base64(const std::vector<std::uint8_t>& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8U | (i + k < bytes.size() ? bytes[i + k] : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool is_padding = i + k > bytes.size();
+      out.push_back(is_padding ? '=' : kDigits[group >> (18U - 6U * k) & 63U]);
+    }
+  }
+  return out;
+}
+
 std::string Card(const std::string& title, const std::string& text, const std::string& body) {
   return "<section class=\"card\">\n<h2>" + title + "</h2>\n" +
          (text.empty() ? "" : "<p class=\"note\">" + text + "</p>\n") + body + "</section>\n";
@@ -129,9 +146,20 @@ std::string Pictures(const Evaluation& evaluation, std::optional<std::size_t> cr
   return out + "</div>\n";
 }
 
+std::string CameraPictures(const std::vector<ReportPicture>& pictures) {
+  std::string out;
+  for (const ReportPicture& picture : pictures) {
+    out += "<figure><img style=\"max-width:100%\" alt=\"" + Escape(picture.caption) +
+           "\" src=\"data:image/jpeg;base64," + Base64(picture.jpeg) + "\"><figcaption>" +
+           Escape(picture.caption) + "</figcaption></figure>\n";
+  }
+  return out;
+}
+
 }  // namespace
 
-std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper) {
+std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
+                       const std::vector<ReportPicture>& pictures) {
   const auto critical = CriticalVehicle(evaluation);
   const std::string name =
       evaluation.log.specs.name.empty() ? "recorded run" : evaluation.log.specs.name;
@@ -150,6 +178,12 @@ std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper) {
            "From above, ego heading up. Moments are chosen around the V2V vehicle that is hidden "
            "longest after having been seen.",
            Pictures(evaluation, critical));
+  if (!pictures.empty()) {
+    out += Card("Through the camera",
+                "White: what the network or the smart camera saw. Green: LOCAL, magenta: PRIORITY, "
+                "as boxes standing on a flat road.",
+                CameraPictures(pictures));
+  }
   out += Card("Beside the paper",
               "Means over the run; missed, false and switching errors are roots, as in the paper. "
               "The paper's row is its own simulation, whose unit and truth set are not stated; the "
@@ -175,12 +209,13 @@ std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper) {
 }
 
 std::string WriteReport(const std::string& folder, const Evaluation& evaluation,
-                        const Evaluation* paper, std::string& error) {
+                        const Evaluation* paper, const std::vector<ReportPicture>& pictures,
+                        std::string& error) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   const auto path = std::filesystem::path(folder) / "index.html";
   std::ofstream file(path, std::ios::binary);
-  file << ReportHtml(evaluation, paper);
+  file << ReportHtml(evaluation, paper, pictures);
   file.close();
   if (!file) {
     error = "cannot write " + path.string();

@@ -124,6 +124,16 @@ TEST_F(EvaluatedRun, JsonHasTheAgreedShape) {
 TEST_F(EvaluatedRun, ReportIsSelfContainedAndTheSameEveryTime) {
   const std::string html = ReportHtml(*evaluation_, nullptr);
   EXPECT_EQ(html, ReportHtml(*evaluation_, nullptr));
+  EXPECT_EQ(html.find("Through the camera"), std::string::npos);
+  // RFC 4648: "foobar" is Zm9vYmFy, "fooba" is Zm9vYmE=, "foob" is Zm9vYg==.
+  const auto shown = ReportHtml(*evaluation_, nullptr,
+                                {{"a", {'f', 'o', 'o', 'b', 'a', 'r'}},
+                                 {"b", {'f', 'o', 'o', 'b', 'a'}},
+                                 {"<c>", {'f', 'o', 'o', 'b'}}});
+  for (const char* text : {"Through the camera", "base64,Zm9vYmFy\"", "base64,Zm9vYmE=\"",
+                           "base64,Zm9vYg==\"", "&lt;c&gt;"}) {
+    EXPECT_NE(shown.find(text), std::string::npos) << text;
+  }
   EXPECT_THAT(html, testing::HasSubstr("vehicle 1 hidden"));
   EXPECT_THAT(html, testing::Not(testing::HasSubstr("<script")));
   EXPECT_THAT(html, testing::Not(testing::HasSubstr("href=\"http")));

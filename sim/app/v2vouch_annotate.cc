@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// v2vouch-annotate: a log's camera pictures with boxes and tracks drawn in.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "sim/annotation/annotate_log.h"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+constexpr const char* kExamples = R"(Examples:
+  v2vouch-annotate tracks.lcm pictures/
+  v2vouch-annotate tracks.lcm pictures/ --camera FRONT --every 10
+
+White: the camera's boxes. Green: LOCAL. Magenta: PRIORITY. LOG is what v2vouchd or v2vouch-replay
+left, the pictures (CAMERA_*_IMAGE) in it; where there are none, boxes and tracks are drawn on an
+empty road.
+
+Exit codes: 0 good; 1 the log cannot be read, has no frame of the camera, or a picture cannot be
+written; 2 usage.)";
+
+int Complain(const std::string& what, int code) {
+  std::fprintf(stderr, "v2vouch-annotate: %s\n", what.c_str());
+  return code;
+}
+
+int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folder, bool as_json) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) return Complain(folder + ": cannot be made: " + failed.message(), kFailed);
+  const bool is_terminal = isatty(STDERR_FILENO) == 1;
+  v2vouch::sim::AnnotationResult result;
+  std::string error;
+  const auto write = [&](v2vouch::Timestamp, const cv::Mat& picture) {
+    char name[32];
+    std::snprintf(name, sizeof(name), "%06lld.png", static_cast<long long>(result.pictures - 1));
+    const std::string path = (std::filesystem::path(folder) / name).string();
+    if (!cv::imwrite(path, picture)) error = path + ": cannot be written";
+    if (is_terminal)
+      std::fprintf(stderr, "\r%lld pictures", static_cast<long long>(result.pictures));
+    return error.empty();
+  };
+  const bool is_done = v2vouch::sim::AnnotateLog(request, write, result, error);
+  if (is_terminal) std::fprintf(stderr, "\r\033[K");
+  if (!is_done || !error.empty()) return Complain(error, kFailed);
+  const nlohmann::ordered_json report = {{"frames", result.frames},
+                                         {"pictures", result.pictures},
+                                         {"unread", result.unread},
+                                         {"has_images", result.has_images}};
+  if (as_json) {
+    std::printf("%s\n", report.dump().c_str());
+  } else {
+    std::printf("%lld pictures of %lld frames in %s\n", static_cast<long long>(result.pictures),
+                static_cast<long long>(result.frames), folder.c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  v2vouch::sim::AnnotationRequest request;
+  std::string folder;
+  std::string lcm_url;
+  bool as_json = false;
+  CLI::App app("Draws boxes and tracks into the camera pictures of a log.", "v2vouch-annotate");
+  app.footer(kExamples);
+  app.set_version_flag("--version", "v2vouch-annotate " V2VOUCH_VERSION);
+  app.add_option("LOG", request.log, "LCM log with tracks")->required();
+  app.add_option("OUT_DIR", folder, "Folder for the pictures (made if absent)")->required();
+  app.add_option("--camera", request.camera, "Name of the camera (default: the first)");
+  app.add_option("--config", request.config_path, "Vehicle file (default: the log's own)");
+  app.add_option("--every", request.every, "Each so many frames one picture")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_flag("--json", as_json, "Figures as one line of JSON");
+  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? 0 : kUsage;
+  }
+  try {
+    return Run(request, folder, as_json);
+  } catch (const std::exception& error) {
+    return Complain(error.what(), kFailed);
+  }
+}
