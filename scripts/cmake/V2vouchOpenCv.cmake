@@ -8,9 +8,3 @@ foreach(part dnn imgcodecs imgproc core)
   target_link_libraries(v2vouch_opencv INTERFACE "${V2VOUCH_OPENCV_${part}}")
 endforeach()
 add_library(v2vouch::opencv ALIAS v2vouch_opencv)
-
-# For tests alone: OpenCV's own camera model.
-find_library(V2VOUCH_OPENCV_calib3d opencv_calib3d REQUIRED)
-add_library(v2vouch_opencv_calib3d INTERFACE)
-target_link_libraries(v2vouch_opencv_calib3d INTERFACE v2vouch_opencv "${V2VOUCH_OPENCV_calib3d}")
-add_library(v2vouch::opencv_calib3d ALIAS v2vouch_opencv_calib3d)
