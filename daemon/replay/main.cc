@@ -18,6 +18,8 @@ Examples:
 
 result.lcm holds all events of drive.lcm and the lists, reports and status of this run, each with the
 time of the event that caused it. The same log and configuration give the same bytes.
+No network runs: for a camera with source: image, what was recorded on CAMERA_<NAME>_DETECTED is the
+input; v2vouch-detect --log puts that into a log of pictures.
 
 Exit codes: 0 done; 1 the log could not be read or written, or the run was stopped;
 2 usage or configuration.)";
