@@ -92,6 +92,9 @@ struct CameraConfig {
   double detection_probability = 0.9;
   double clutter_per_image = 0.1;
   double min_score = 0.3;  ///< Weaker boxes are ignored.
+  /// A box whose bottom edge a nearer box covers by more than this share tells no range: for
+  /// detectors that draw what they see of a vehicle. 1: every bottom is believed.
+  double covered_bottom_share = 1.0;
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -121,6 +124,7 @@ struct CameraConfig {
     a.Field("detection_probability", detection_probability, {.above = 0.0, .below = 1.0});
     a.Field("clutter_per_image", clutter_per_image, {.above = 0.0, .at_most = 100.0});
     a.Field("min_score", min_score, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("covered_bottom_share", covered_bottom_share, {.at_least = 0.0, .at_most = 1.0});
   }
 };
 

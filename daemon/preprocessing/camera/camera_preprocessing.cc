@@ -52,6 +52,21 @@ Eigen::Vector2d Undistort(const Lens& lens, const Eigen::Vector2d& distorted) {
   return (again - distorted).norm() < kUsable ? ideal : distorted;
 }
 
+// Share of a box's bottom edge that lies inside the one box that covers most of it. Of two boxes
+// the one that reaches lower is nearer.
+double CoveredBottom(const CameraBox& box, const CameraDetections& detections, double min_score) {
+  const double bottom = box.top_px + box.height_px;
+  double most = 0.0;
+  for (const CameraBox& other : detections.boxes) {
+    const bool is_nearer = other.top_px + other.height_px > bottom && other.top_px < bottom;
+    if (!is_nearer || other.score < min_score) continue;
+    const double width = std::min(box.left_px + box.width_px, other.left_px + other.width_px) -
+                         std::max(box.left_px, other.left_px);
+    most = std::max(most, width / box.width_px);
+  }
+  return most;
+}
+
 bool IsUsable(const CameraBox& box, double min_score) {
   return std::isfinite(box.left_px) && std::isfinite(box.top_px) && box.width_px > 0.0 &&
          box.height_px > 0.0 && std::isfinite(box.width_px) && std::isfinite(box.height_px) &&
@@ -112,7 +127,10 @@ void ProcessCamera(const CameraDetections& detections, const CameraConfig& camer
         std::hypot(camera.edge_sigma_px * depression_per_px, camera.pitch_sigma_rad);
     m.left_is_cut = left <= kBorder_px;
     m.right_is_cut = right >= width - kBorder_px;
-    m.bottom_is_cut = bottom >= height - kBorder_px;
+    m.bottom_is_cut =
+        bottom >= height - kBorder_px ||
+        (camera.covered_bottom_share < 1.0 &&
+         CoveredBottom(box, detections, camera.min_score) > camera.covered_bottom_share);
     m.object_class = box.object_class;
     m.score = box.score;
     measurements.push_back(m);

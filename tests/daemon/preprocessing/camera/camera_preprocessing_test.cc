@@ -131,6 +131,25 @@ TEST(ProcessCamera, BordersAreFlaggedWithinTwoPixels) {
   EXPECT_NEAR(corner.azimuth_right_rad, -std::atan(0.64), 1e-12);
 }
 
+TEST(ProcessCamera, ABottomBehindANearerBoxTellsNoRangeWhereAskedFor) {
+  CameraConfig camera;
+  const CameraBox far = Box(500.0, 350.0, 100.0, 60.0);            // Bottom at 410.
+  const CameraBox near = Box(540.0, 380.0, 300.0, 200.0);          // Covers 60 % of it.
+  EXPECT_FALSE(Process(camera, {far, near}).at(0).bottom_is_cut);  // Built in: believed.
+  camera.covered_bottom_share = 0.5;
+  const auto m = Process(camera, {far, near});
+  EXPECT_TRUE(m.at(0).bottom_is_cut);
+  EXPECT_FALSE(m.at(0).left_is_cut || m.at(0).right_is_cut);
+  EXPECT_FALSE(m.at(1).bottom_is_cut);
+  // Beside it, behind it, or too weak to be believed: nothing is covered.
+  EXPECT_FALSE(Process(camera, {far, Box(601.0, 380.0, 300.0, 200.0)}).at(0).bottom_is_cut);
+  EXPECT_FALSE(Process(camera, {far, Box(540.0, 300.0, 300.0, 100.0)}).at(0).bottom_is_cut);
+  EXPECT_FALSE(Process(camera, {far, Box(540.0, 411.0, 300.0, 200.0)}).at(0).bottom_is_cut);
+  EXPECT_FALSE(Process(camera, {far, Box(540.0, 380.0, 300.0, 200.0, 0.2)}).at(0).bottom_is_cut);
+  camera.covered_bottom_share = 0.7;
+  EXPECT_FALSE(Process(camera, {far, near}).at(0).bottom_is_cut);
+}
+
 TEST(ProcessCamera, SkipsWhatCannotBeABox) {
   const double inf = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(Process(CameraConfig{},
