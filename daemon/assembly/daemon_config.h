@@ -60,10 +60,8 @@ struct DaemonConfig {
 void CheckConfig(const DaemonConfig& config, const std::string& name,
                  std::vector<std::string>& problems);
 
-/// Defaults where `path` is empty; the calibration that it names is read and applied. @return false
-/// with all problems named.
-/// Defaults where `path` is empty. Files that the configuration names are looked for beside it.
-/// @return false with all problems named.
+/// Defaults where `path` is empty. Files that the configuration names are looked for beside it; the
+/// calibration is read and applied. @return false with all problems named.
 bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
                       std::vector<std::string>& problems);
 

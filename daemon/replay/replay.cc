@@ -100,9 +100,8 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
   }
 
   const auto started = SteadyClock::now();
-  Engine engine(config);
   UnseenPictures unseen(config);
-  Engine engine(config, std::make_unique<NullBiasEstimator>());
+  Engine engine(config);
   Outbox outbox;
   LogEvent event;
   Timestamp first{};
