@@ -42,15 +42,15 @@ struct DetectorConfig {
   int input_width_px = 960;  ///< The network's input; multiples of 32 that suit the camera's shape.
   int input_height_px = 544;
   PictureFit fit = PictureFit::kStretch;
-  int tiles = 1;               ///< Side by side, for wide pictures: each goes through the network.
-  double tile_overlap = 0.2;   ///< Share of a tile that its neighbour sees too.
-  double clahe_clip = 1.0;     ///< Contrast-limited histogram equalisation; 0: none.
-  int clahe_grid = 8;          ///< Cells of it per axis.
-  double edge_gain = 0.0;      ///< Edges added to the picture (unsharp mask); 0: none.
+  int tiles = 1;              ///< Side by side, for wide pictures: each goes through the network.
+  double tile_overlap = 0.2;  ///< Share of a tile that its neighbour sees too.
+  double clahe_clip = 1.0;    ///< Contrast-limited histogram equalisation; 0: none.
+  int clahe_grid = 8;         ///< Cells of it per axis.
+  double edge_gain = 0.0;     ///< Edges added to the picture (unsharp mask); 0: none.
   bool refine_bottom = true;  ///< Move a box's bottom to the strongest horizontal edge near it.
-  double min_score = 0.3;      ///< Objectness times class score.
-  double nms_iou = 0.45;       ///< Of two boxes that overlap more, the weaker one goes.
-  int threads = 1;             ///< For the network; leave a core to the fusion.
+  double min_score = 0.3;     ///< Objectness times class score.
+  double nms_iou = 0.45;      ///< Of two boxes that overlap more, the weaker one goes.
+  int threads = 1;            ///< For the network; leave a core to the fusion.
   /// Others the network knows are ignored. The default is COCO's numbering.
   std::vector<NetworkClass> classes = {{0, ObjectClass::kPedestrian}, {1, ObjectClass::kCyclist},
                                        {2, ObjectClass::kCar},        {3, ObjectClass::kMotorcycle},

@@ -11,8 +11,8 @@ namespace v2vouch {
 
 /// Boxes -> angles in the levelled camera frame: score threshold, undistortion (OpenCV model,
 /// inverted by fixed-point iteration), roll and pitch of the mount taken out (yaw stays: bearings
-/// count from the camera's own axis), flags for edges that are the picture's border (within 2 px), and for
-/// bottoms behind a nearer box (covered_bottom_share).
+/// count from the camera's own axis), flags for edges that are the picture's border (within 2 px),
+/// and for bottoms behind a nearer box (covered_bottom_share).
 ///
 /// Left and right edge give their bearing at half the box's height, the bottom edge its depression
 /// at half the box's width. Sigmas: edge_sigma_px through the lens at the same pixels; depression
