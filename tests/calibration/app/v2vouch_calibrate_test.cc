@@ -2,10 +2,8 @@
 // v2vouch-calibrate as its users meet it: a child process.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
+#include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,29 +11,12 @@
 #include <string>
 
 #include "daemon/assembly/calibration_file.h"
+#include "tests/support/child_process.h"
 
 namespace v2vouch {
 namespace {
 
 using testing::HasSubstr;
-
-struct Finished {
-  int code = -1;
-  std::string output;
-};
-
-Finished Execute(const std::string& command) {
-  Finished finished;
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return finished;
-  std::array<char, 4096> chunk{};
-  while (std::fgets(chunk.data(), static_cast<int>(chunk.size()), pipe) != nullptr) {
-    finished.output += chunk.data();
-  }
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) finished.code = WEXITSTATUS(status);
-  return finished;
-}
 
 class Calibrate : public testing::Test {
  protected:
@@ -43,8 +24,8 @@ class Calibrate : public testing::Test {
   ~Calibrate() override { std::filesystem::remove_all(folder_); }
   [[nodiscard]] std::string File(const char* name) const { return (folder_ / name).string(); }
   void Drive(const char* scenario, const char* options, const char* log) const {
-    const Finished made = Execute(std::string("'") + V2VOUCH_SIM + "' run " + scenario + " " + options +
-                              " --out '" + File(log) + "' 2>&1");
+    const Finished made = Called(
+        V2VOUCH_SIM, std::string("run ") + scenario + " " + options + " --out '" + File(log) + "'");
     ASSERT_EQ(made.code, 0) << made.output;
   }
   [[nodiscard]] Finished Calibrated(const std::string& arguments) const {

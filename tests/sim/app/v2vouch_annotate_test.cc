@@ -2,38 +2,17 @@
 // v2vouch-annotate as its users meet it: a child process.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
 #include "tests/sim/import/files.h"
+#include "tests/support/child_process.h"
 
 namespace v2vouch::sim {
 namespace {
 
 using ::testing::HasSubstr;
-
-struct Finished {
-  int code = -1;
-  std::string output;  // Both streams.
-};
-
-Finished Called(const std::string& program, const std::string& arguments) {
-  const std::string command = "'" + program + "' " + arguments + " 2>&1";
-  Finished finished;
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return finished;
-  std::array<char, 4096> chunk{};
-  while (std::fgets(chunk.data(), static_cast<int>(chunk.size()), pipe) != nullptr) {
-    finished.output += chunk.data();
-  }
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) finished.code = WEXITSTATUS(status);
-  return finished;
-}
 
 TEST(V2vouchAnnotate, TellsUsageErrorsFromFailures) {
   const ScratchFolder folder("annotate_app");

@@ -2,14 +2,13 @@
 // v2vouch-bench-tracker as its users meet it: a child process.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "tests/support/child_process.h"
 
 namespace v2vouch::bench {
 namespace {
@@ -17,24 +16,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-struct Finished {
-  int code = -1;
-  std::string output;  // Both streams.
-};
-
-Finished Bench(const std::string& arguments) {
-  const std::string command = std::string("'") + V2VOUCH_BENCH_TRACKER + "' " + arguments + " 2>&1";
-  Finished finished;
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return finished;
-  std::array<char, 4096> chunk{};
-  while (std::fgets(chunk.data(), static_cast<int>(chunk.size()), pipe) != nullptr) {
-    finished.output += chunk.data();
-  }
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) finished.code = WEXITSTATUS(status);
-  return finished;
-}
+Finished Bench(const std::string& arguments) { return Called(V2VOUCH_BENCH_TRACKER, arguments); }
 
 // The value behind a key of the flat JSON object.
 double Value(const std::string& json, const std::string& key) {

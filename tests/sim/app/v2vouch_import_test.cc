@@ -2,39 +2,20 @@
 // v2vouch-import as its users meet it: a child process.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <map>
 #include <string>
 
 #include "daemon/io/event_log.h"
 #include "tests/sim/import/files.h"
+#include "tests/support/child_process.h"
 
 namespace v2vouch::sim {
 namespace {
 
 using testing::HasSubstr;
 
-struct Finished {
-  int code = -1;
-  std::string output;  // Both streams.
-};
-
-Finished Import(const std::string& arguments) {
-  const std::string command = std::string("'") + V2VOUCH_IMPORT + "' " + arguments + " 2>&1";
-  Finished finished;
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return finished;
-  std::array<char, 4096> chunk{};
-  while (std::fgets(chunk.data(), static_cast<int>(chunk.size()), pipe) != nullptr) {
-    finished.output += chunk.data();
-  }
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) finished.code = WEXITSTATUS(status);
-  return finished;
-}
+Finished Import(const std::string& arguments) { return Called(V2VOUCH_IMPORT, arguments); }
 
 // One second of a drive with one car 30 m ahead.
 void WriteDrive(const ScratchFolder& folder) {

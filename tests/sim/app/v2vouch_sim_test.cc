@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // v2vouch-sim as its users meet it: a child process.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "daemon/io/event_log.h"
+#include "tests/support/child_process.h"
 
 namespace v2vouch::sim {
 namespace {
 
-int ExitCode(const std::string& arguments) {
-  const std::string command =
-      std::string("'") + V2VOUCH_SIM + "' " + arguments + " >/dev/null 2>/dev/null";
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
+int ExitCode(const std::string& arguments) { return Called(V2VOUCH_SIM, arguments).code; }
 
 class V2vouchSim : public testing::Test {
  protected:
