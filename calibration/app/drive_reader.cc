@@ -26,18 +26,6 @@ bool HashFile(const std::string& path, std::string& hex) {
   return std::ferror(file.get()) == 0;
 }
 
-void Keep(Input& input, DriveLog& own) {
-  if (auto* scan = std::get_if<RadarScan>(&input)) {
-    own.scans.push_back(std::move(*scan));
-  } else if (auto* picture = std::get_if<CameraDetections>(&input)) {
-    own.pictures.push_back(std::move(*picture));
-  } else if (const auto* motion = std::get_if<EgoMotion>(&input)) {
-    own.motion.push_back(*motion);
-  } else if (const auto* fix = std::get_if<GnssFix>(&input)) {
-    own.fixes.push_back(*fix);
-  }
-}
-
 }  // namespace
 
 bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config, Drive& drive,
@@ -59,7 +47,7 @@ bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config,
         ++drive.refused;
       } else if (auto* input = std::get_if<Input>(&*decoded)) {
         drive.newest = std::max(drive.newest, HeaderOf(*input).stamp);
-        Keep(*input, drive.own);
+        drive.own.Keep(std::move(*input));
       }
     }
     drive.damaged += reader->damaged();
@@ -68,13 +56,7 @@ bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config,
       return false;
     }
   }
-  const auto by_stamp = [](auto& messages) {
-    std::ranges::stable_sort(messages, {}, [](const auto& m) { return m.stamp; });
-  };
-  by_stamp(drive.own.motion);
-  by_stamp(drive.own.fixes);
-  by_stamp(drive.own.scans);
-  by_stamp(drive.own.pictures);
+  drive.own.SortByStamp();
   if (drive.own.motion.empty()) {
     error = logs.front() + ": no " + config.lcm.channels.ego_motion + " of this vehicle in it";
     return false;

@@ -14,6 +14,9 @@ struct DriveLog {
   std::vector<GnssFix> fixes;
   std::vector<RadarScan> scans;
   std::vector<CameraDetections> pictures;
+
+  void Keep(Input input);  ///< A BSM and what else has no place here is passed over.
+  void SortByStamp();      ///< What was received first stays first among equals.
 };
 
 }  // namespace v2vouch

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "daemon/wire/input_decoder.h"
 #include "sim/wire/simulation.h"
@@ -32,22 +33,12 @@ DriveLog SimulatedDrive(const std::string& name, double duration_s, std::uint64_
     for (const sim::SimEvent& event : events) {
       const auto channel = decoder.Find(event.channel);
       if (!channel) continue;
-      const auto decoded = decoder.Decode(*channel, event.bytes, event.arrival, dropped);
-      const Input* input = decoded ? std::get_if<Input>(&*decoded) : nullptr;
-      if (input == nullptr) continue;
-      if (const auto* scan = std::get_if<RadarScan>(input)) log.scans.push_back(*scan);
-      if (const auto* boxes = std::get_if<CameraDetections>(input)) log.pictures.push_back(*boxes);
-      if (const auto* motion = std::get_if<EgoMotion>(input)) log.motion.push_back(*motion);
-      if (const auto* fix = std::get_if<GnssFix>(input)) log.fixes.push_back(*fix);
+      auto decoded = decoder.Decode(*channel, event.bytes, event.arrival, dropped);
+      Input* const input = decoded ? std::get_if<Input>(&*decoded) : nullptr;
+      if (input != nullptr) log.Keep(std::move(*input));
     }
   }
-  const auto by_stamp = [](auto& messages) {
-    std::ranges::stable_sort(messages, {}, [](const auto& m) { return m.stamp; });
-  };
-  by_stamp(log.motion);
-  by_stamp(log.fixes);
-  by_stamp(log.scans);
-  by_stamp(log.pictures);
+  log.SortByStamp();
   return log;
 }
 
