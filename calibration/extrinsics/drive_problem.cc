@@ -15,7 +15,6 @@ namespace v2vouch {
 namespace {
 
 constexpr int kThreads = 2;
-constexpr double kHeld = 1e-3;         // Of a prior's sigma: as good as fixed.
 constexpr double kMinSpeed_mps = 2.0;  // Slower, the direction of GNSS velocity says little.
 
 template <class Cost, int... kSizes>
@@ -101,8 +100,7 @@ struct DriveProblem::State {
     const auto add = [&]<int kSize>(double* block, int at) {
       for (int i = 0; i < kSize; ++i) {
         const auto& d = descriptions[static_cast<std::size_t>(at + i)];
-        const double sigma = d.is_considered ? kHeld * d.prior_std : d.prior_std;
-        Add(AutoDiff<PriorCost, kSize>({i, d.prior, sigma}), nullptr, group, 0.0, block);
+        Add(AutoDiff<PriorCost, kSize>({i, d.prior, d.equation_std()}), nullptr, group, 0.0, block);
       }
       blocks.push_back(block);
     };

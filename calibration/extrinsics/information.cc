@@ -103,8 +103,7 @@ MountingInformation Reduce(const DriveProblem& problem, const MountingParameters
   // Influence of every equation on the estimate: X' J' r, X = [I; -G] (S + priors)^-1.
   Eigen::VectorXd prior(np);
   for (int i = 0; i < np; ++i) {
-    const auto& d = parameters.descriptions()[static_cast<std::size_t>(i)];
-    const double s = d.is_considered ? 1e-3 * d.prior_std : d.prior_std;
+    const double s = parameters.descriptions()[static_cast<std::size_t>(i)].equation_std();
     prior(i) = 1.0 / (s * s);
   }
   const Eigen::MatrixXd C = (information.S + prior.asDiagonal().toDenseMatrix()).inverse();

@@ -49,6 +49,12 @@ class MountingParameters {
     bool is_anchor = false;  ///< Physics says what the data need not: its prior counts as data.
     /// Held at the prior, its doubt passed on to the others: what the data say of it is not it.
     bool is_considered = false;
+
+    /// Sigma of the prior as an equation: what is considered only is as good as fixed.
+    [[nodiscard]] double equation_std() const {
+      constexpr double kHeld = 1e-3;
+      return is_considered ? kHeld * prior_std : prior_std;
+    }
   };
   [[nodiscard]] const std::vector<Description>& descriptions() const { return descriptions_; }
   [[nodiscard]] int size() const { return static_cast<int>(values_.size()); }
