@@ -8,8 +8,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "calibration/extrinsics/drive_costs.h"
+#include "calibration/extrinsics/white_noise.h"
 
 namespace v2vouch {
 namespace {
@@ -213,18 +215,9 @@ void DriveProblem::State::AddGnss() {
       heading_sigmas.push_back(fix.yaw_sigma_rad);
     }
   }
-  const auto sigma_of = [](const std::vector<double>& signal, std::vector<double> stated,
-                           double usual) {
-    if (stated.empty()) return usual;
-    std::ranges::nth_element(stated,
-                             stated.begin() + static_cast<std::ptrdiff_t>(stated.size() / 2));
-    double most = stated[stated.size() / 2];
-    if (!std::isfinite(most) || most <= 0.0) most = usual;
-    const double white = WhiteSigma(signal);
-    return std::isfinite(white) ? std::clamp(white, 0.25 * most, most) : most;
-  };
-  const double speed_sigma = sigma_of(speeds, speed_sigmas, 0.1);
-  const double heading_sigma = sigma_of(headings, heading_sigmas, FromDegrees(0.5));
+  const double speed_sigma = WhiteSigmaWithin(speeds, std::move(speed_sigmas), 0.1);
+  const double heading_sigma =
+      WhiteSigmaWithin(headings, std::move(heading_sigmas), FromDegrees(0.5));
 
   for (const GnssFix& fix : data.log->fixes) {
     const Timestamp t = fix.stamp - FromSeconds(data.vehicle->gnss_latency_s);

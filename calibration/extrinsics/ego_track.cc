@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "calibration/extrinsics/white_noise.h"
 
 namespace v2vouch {
 namespace {
@@ -10,26 +13,7 @@ namespace {
 constexpr double kNear_s = 0.06;
 constexpr double kSlope_s = 0.1;  // Either way.
 
-double Stated(double estimate, double stated) {
-  return std::isfinite(estimate) ? std::clamp(estimate, 0.25 * stated, stated) : stated;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 }  // namespace
-
-double WhiteSigma(const std::vector<double>& signal) {
-  if (signal.size() < 20) return std::nan("");
-  std::vector<double> differences;
-  for (std::size_t i = 1; i + 1 < signal.size(); ++i) {
-    differences.push_back(std::abs(signal[i + 1] - 2.0 * signal[i] + signal[i - 1]));
-  }
-  return Median(std::move(differences)) / (0.6745 * std::sqrt(6.0));
-}
 
 EgoTrack::EgoTrack(const std::vector<EgoMotion>& motion) {
   std::vector<double> speeds, rates, speed_sigmas, rate_sigmas;
@@ -44,8 +28,8 @@ EgoTrack::EgoTrack(const std::vector<EgoMotion>& motion) {
     rates.push_back(m.yaw_rate_radps);
   }
   if (samples_.empty()) return;
-  speed_sigma_mps_ = Stated(WhiteSigma(speeds), Median(std::move(speed_sigmas)));
-  yaw_rate_sigma_radps_ = Stated(WhiteSigma(rates), Median(std::move(rate_sigmas)));
+  speed_sigma_mps_ = WhiteSigmaWithin(speeds, std::move(speed_sigmas), speed_sigma_mps_);
+  yaw_rate_sigma_radps_ = WhiteSigmaWithin(rates, std::move(rate_sigmas), yaw_rate_sigma_radps_);
 
   std::size_t from = 0;
   std::size_t to = 0;

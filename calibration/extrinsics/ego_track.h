@@ -38,8 +38,7 @@ class EgoTrack {
   [[nodiscard]] std::optional<std::size_t> Nearest(Timestamp t) const;
   [[nodiscard]] std::optional<Place> At(Timestamp t) const;
 
-  /// White noise of one sample, 1 sigma, from the signal's second differences; within a quarter of
-  /// what the messages state and all of it, since stated figures hold systematic errors too.
+  /// White noise of one sample, 1 sigma: WhiteSigmaWithin what the messages state.
   [[nodiscard]] double speed_sigma_mps() const { return speed_sigma_mps_; }
   [[nodiscard]] double yaw_rate_sigma_radps() const { return yaw_rate_sigma_radps_; }
 
@@ -48,9 +47,5 @@ class EgoTrack {
   double speed_sigma_mps_ = 0.1;
   double yaw_rate_sigma_radps_ = 0.002;
 };
-
-/// White noise of an evenly sampled smooth signal: the median of |x[i+1] - 2 x[i] + x[i-1]|, whose
-/// variance is 6 sigma^2, over 0.6745 sqrt(6). NaN for fewer than 20 values.
-double WhiteSigma(const std::vector<double>& signal);
 
 }  // namespace v2vouch

@@ -52,16 +52,5 @@ TEST(EgoTrack, FindsTheWhiteNoiseThatAStatedSigmaHides) {
   EXPECT_DOUBLE_EQ(EgoTrack(Circle(10.0, 0.0, 0.001, 4000)).speed_sigma_mps(), 0.25 * 0.15);
 }
 
-TEST(WhiteSigma, IsBlindToASmoothSignalAndNeedsTwentyValues) {
-  Random random(9);
-  std::vector<double> signal;
-  for (int i = 0; i < 5000; ++i) {
-    signal.push_back(20.0 * std::sin(0.01 * i) + random.Normal(0.0, 0.3));
-  }
-  EXPECT_NEAR(WhiteSigma(signal), 0.3, 0.015);
-  signal.resize(19);
-  EXPECT_TRUE(std::isnan(WhiteSigma(signal)));
-}
-
 }  // namespace
 }  // namespace v2vouch
