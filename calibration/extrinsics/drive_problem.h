@@ -50,6 +50,8 @@ struct Equation {
   double time_s = 0.0;
 };
 
+struct DriveEquations;  // How they are made.
+
 /// The equations of a drive as one sparse non-linear least-squares problem, every residual
 /// whitened: priors of the mounting; per odometry sample that is used its true speed and yaw rate,
 /// measured by odometer, gyro, GNSS velocity turned into the body by GNSS heading, and the static
@@ -90,8 +92,7 @@ class DriveProblem {
   [[nodiscard]] Linear Linearised(bool with_loss) const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<DriveEquations> equations_;
 };
 
 }  // namespace v2vouch
