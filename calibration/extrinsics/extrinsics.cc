@@ -124,13 +124,13 @@ void Select(const Pass& pass, bool is_first, MountingParameters& parameters, Dri
   std::erase_if(data.windows, [&](const TargetWindow&) { return n++ % pass.every_window != 0; });
 }
 
-std::map<std::string, double> InflationOf(const DriveProblem& problem,
-                                          const MountingParameters& parameters) {
+// By group, where its noise is not white.
+std::map<std::string, double> InflationOf(const MountingInformation& information,
+                                          const std::vector<std::string>& groups) {
   std::map<std::string, double> inflation;
-  const MountingInformation information = Reduce(problem, parameters, true);
-  for (std::size_t g = 0; information.S.size() > 0 && g < problem.groups().size(); ++g) {
+  for (std::size_t g = 0; information.S.size() > 0 && g < groups.size(); ++g) {
     const double of_group = information.inflation(static_cast<Eigen::Index>(g));
-    if (of_group > 1.0) inflation[problem.groups()[g]] = of_group;
+    if (of_group > 1.0) inflation[groups[g]] = of_group;
   }
   return inflation;
 }
@@ -172,12 +172,14 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
   }
   // Correlated measurements weigh what they are worth, or the prior would be outvoted by
   // repetition.
-  problem_options.inflation = InflationOf(*problem, parameters);
-  if (!problem_options.inflation.empty() && !solve(0.8, 0.95, "weighed solution")) return result;
+  MountingInformation information = Reduce(*problem, parameters, true);
+  problem_options.inflation = InflationOf(information, problem->groups());
+  const bool is_weighed = !problem_options.inflation.empty();
+  if (is_weighed && !solve(0.8, 0.95, "weighed solution")) return result;
   tell(0.95, "observability");
+  if (is_weighed) information = Reduce(*problem, parameters, true);
   result.pictures = DrawResiduals(data, *problem, parameters);
   result.excitation = ExcitationOf(ego, data);
-  const MountingInformation information = Reduce(*problem, parameters, true);
   const MountingInformation gaussian = Reduce(*problem, parameters, false);
   if (information.S.size() == 0 || gaussian.S.size() == 0) {
     result.problems.push_back("the equations have no unique solution");
