@@ -43,12 +43,10 @@ ResidualPictures DrawResiduals(const DriveData& data, const DriveProblem& proble
                                const MountingParameters& parameters) {
   std::vector<Histogram> doppler(data.vehicle->radars.size());
   std::vector<Histogram> range(data.vehicle->radars.size());
-  const double* ego = parameters.Ego();
   for (const StaticReturn& one : data.returns) {
     const EgoTrack::Sample& sample = data.ego->samples()[one.epoch];
-    const double omega = sample.yaw_rate_radps - ego[MountingParameters::kYawRateBias];
-    const double v = sample.speed_mps / ego[MountingParameters::kSpeedScale] +
-                     omega * ego[MountingParameters::kOdometerY] + one.dt_s * sample.accel_mps2;
+    const auto [speed, omega] = MotionAt(sample, parameters.Ego());
+    const double v = speed + one.dt_s * sample.accel_mps2;
     const double* radar = parameters.Radar(one.radar);
     const double bearing = radar[2] + one.azimuth_rad;
     const double off = one.range_rate_mps + (v - omega * radar[1]) * std::cos(bearing) +

@@ -2,7 +2,6 @@
 #include "calibration/extrinsics/static_doppler.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace v2vouch {
@@ -10,15 +9,14 @@ namespace {
 
 constexpr int kIterations = 4;
 
-// The ego's motion at the odometry sample, scale and bias taken off.
+}  // namespace
+
 std::array<double, 2> MotionAt(const EgoTrack::Sample& sample, const double* ego) {
   const double omega = sample.yaw_rate_radps - ego[MountingParameters::kYawRateBias];
   return {sample.speed_mps / ego[MountingParameters::kSpeedScale] +
               omega * ego[MountingParameters::kOdometerY],
           omega};
 }
-
-}  // namespace
 
 double DopplerResidual::operator()(const double* radar, const double* motion, double slip,
                                    double* d_radar, double* d_motion, double* d_slip) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -46,6 +47,10 @@ struct DopplerResidual {
   double operator()(const double* radar, const double* motion, double slip, double* d_radar,
                     double* d_motion, double* d_slip) const;
 };
+
+/// The ego's speed v and yaw rate omega at an odometry sample: scale and bias taken off.
+/// @param ego MountingParameters::Ego().
+std::array<double, 2> MotionAt(const EgoTrack::Sample& sample, const double* ego);
 
 struct DopplerSelection {
   double min_speed_mps = 3.0;
