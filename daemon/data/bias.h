@@ -68,7 +68,7 @@ class BiasEstimator {
 };
 
 /// Knows nothing: every sender keeps the prior.
-class NullBiasEstimator final : public BiasEstimator {
+class NullBiasEstimator : public BiasEstimator {
  public:
   void Observe(const BiasResidual&) override {}
   void AdvanceTo(Timestamp) override {}
