@@ -2,23 +2,13 @@
 #include "sim/app/import_kitti.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <map>
-#include <nlohmann/json.hpp>
 
-#include "daemon/io/event_log.h"
+#include "sim/app/import_output.h"
 #include "sim/app/picture_files.h"
 
 namespace v2vouch::sim {
 namespace {
-
-constexpr int kFailed = 1;
-
-int Fail(const std::string& why) {
-  std::fprintf(stderr, "v2vouch-import: %s\n", why.c_str());
-  return kFailed;
-}
 
 // Of every frame of the sequence, and where it comes from.
 std::vector<KittiMotion> MotionOf(const KittiRequest& request,
@@ -47,30 +37,6 @@ std::vector<KittiMotion> MotionOf(const KittiRequest& request,
   return motion;
 }
 
-int WriteLog(const KittiRequest& request, const std::vector<ImportedEvent>& events,
-             nlohmann::ordered_json figures) {
-  std::string error;
-  const auto writer = LogWriter::Create(request.out, error);
-  if (writer == nullptr) return Fail(error);
-  std::map<std::string, std::int64_t> channels;
-  for (const ImportedEvent& event : events) {
-    writer->Write(event.received, event.channel, event.bytes);
-    ++channels[event.channel];
-  }
-  if (!writer->Close(error)) return Fail(error);
-  figures["events"] = events.size();
-  figures["seconds"] = ToSeconds(events.back().received - events.front().received);
-  figures["channels"] = channels;
-  if (request.as_json) {
-    std::printf("%s\n", figures.dump().c_str());
-    return 0;
-  }
-  for (const auto& [name, value] : figures.items()) {
-    std::printf("%-16s %s\n", name.c_str(), value.dump().c_str());
-  }
-  return 0;
-}
-
 }  // namespace
 
 int ImportKitti(const KittiRequest& given) {
@@ -79,11 +45,11 @@ int ImportKitti(const KittiRequest& given) {
   std::vector<KittiLabel> labels;
   KittiCamera camera;
   if (request.labels.empty() && request.images.empty()) {
-    return Fail("kitti wants --labels, --images or both");
+    return ImportFailed("kitti wants --labels, --images or both");
   }
-  if (!ReadKittiCamera(request.calibration, camera, error)) return Fail(error);
+  if (!ReadKittiCamera(request.calibration, camera, error)) return ImportFailed(error);
   if (!request.labels.empty() && !ReadKittiLabels(request.labels, labels, error)) {
-    return Fail(error);
+    return ImportFailed(error);
   }
   KittiPictures pictures;
   int count = 0;
@@ -92,7 +58,7 @@ int ImportKitti(const KittiRequest& given) {
     const int last = LastNumberedPicture(request.images);
     if (last < 0 || !SizeOfNumberedPicture(request.images, last, options.image_width_px,
                                            options.image_height_px)) {
-      return Fail(request.images + ": holds no numbered picture (000000.png ...)");
+      return ImportFailed(request.images + ": holds no numbered picture (000000.png ...)");
     }
     pictures = [&](int frame) {
       auto bytes = NumberedPicture(request.images, frame, options.image_width_px,
@@ -103,22 +69,22 @@ int ImportKitti(const KittiRequest& given) {
   }
   std::string source;
   const auto motion = MotionOf(request, labels, camera, source, error);
-  if (motion.empty()) return Fail(error);
+  if (motion.empty()) return ImportFailed(error);
   const std::string name =
       "kitti " + std::filesystem::path(request.labels.empty() ? request.images : request.labels)
                      .stem()
                      .string();
   const auto events = KittiEvents(name, labels, camera, motion, request.options, pictures);
-  if (!error.empty()) return Fail(error);
+  if (!error.empty()) return ImportFailed(error);
   const auto measured = std::count_if(motion.begin(), motion.end(),
                                       [](const KittiMotion& m) { return m.is_measured; });
-  return WriteLog(
-      request, events,
-      {{"log", request.out},
-       {"frames", motion.size()},
+  return WriteImportedLog(
+      request.out, events,
+      {{"frames", motion.size()},
        {"pictures", count},
        {"ego_from", source},
-       {"ego_measured", static_cast<double>(measured) / static_cast<double>(motion.size())}});
+       {"ego_measured", static_cast<double>(measured) / static_cast<double>(motion.size())}},
+      request.as_json);
 }
 
 }  // namespace v2vouch::sim

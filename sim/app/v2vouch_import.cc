@@ -6,12 +6,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "daemon/io/event_log.h"
 #include "sim/app/import_kitti.h"
+#include "sim/app/import_output.h"
 #include "sim/import/comma2k19.h"
 #include "sim/import/fcd.h"
 #include "sim/import/sumo_scenario.h"
@@ -40,45 +38,17 @@ void Say(const char* what) {
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "v2vouch-import: %s\n", what);
 }
 
-int Fail(const std::string& why) {
-  std::fprintf(stderr, "v2vouch-import: %s\n", why.c_str());
-  return kFailed;
-}
-
-void Report(const nlohmann::ordered_json& figures, bool as_json) {
-  if (as_json) {
-    std::printf("%s\n", figures.dump().c_str());
-    return;
-  }
-  for (const auto& [name, value] : figures.items()) {
-    std::printf("%-16s %s\n", name.c_str(), value.dump().c_str());
-  }
-}
-
 int ImportComma2k19(const std::string& folder, const std::string& out,
                     const Comma2k19Options& options, bool as_json) {
   std::string error;
   Comma2k19Segment segment;
   Say("reading the drive");
-  if (!ReadComma2k19(folder, segment, error)) return Fail(error);
+  if (!ReadComma2k19(folder, segment, error)) return ImportFailed(error);
   const std::vector<ImportedEvent> events = ToEvents(segment, options, error);
-  if (events.empty()) return Fail(folder + ": " + error);
+  if (events.empty()) return ImportFailed(folder + ": " + error);
 
   Say("writing the log");
-  const auto writer = LogWriter::Create(out, error);
-  if (writer == nullptr) return Fail(error);
-  std::map<std::string, std::int64_t> channels;
-  for (const ImportedEvent& event : events) {
-    writer->Write(event.received, event.channel, event.bytes);
-    ++channels[event.channel];
-  }
-  if (!writer->Close(error)) return Fail(error);
-  Report({{"log", out},
-          {"events", events.size()},
-          {"seconds", ToSeconds(events.back().received - events.front().received)},
-          {"channels", channels}},
-         as_json);
-  return 0;
+  return WriteImportedLog(out, events, {}, as_json);
 }
 
 bool WriteFile(const std::filesystem::path& path, const std::string& text) {
@@ -92,29 +62,31 @@ int ImportSumo(const std::string& path, const std::string& out, SumoOptions opti
   std::string error;
   Say("reading the traffic");
   const std::vector<FcdVehicle> vehicles = ReadFcd(path, error);
-  if (vehicles.empty()) return Fail(error);
+  if (vehicles.empty()) return ImportFailed(error);
 
   const std::filesystem::path folder(out);
   if (options.name.empty()) options.name = folder.lexically_normal().filename().string();
   Say("choosing the ego and driving its surroundings");
   SumoScenario scenario;
-  if (!MakeSumoScenario(vehicles, options, scenario, error)) return Fail(path + ": " + error);
+  if (!MakeSumoScenario(vehicles, options, scenario, error)) {
+    return ImportFailed(path + ": " + error);
+  }
 
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
-  if (failed) return Fail(out + ": cannot be made: " + failed.message());
+  if (failed) return ImportFailed(out + ": cannot be made: " + failed.message());
   for (const auto& [name, text] : {std::pair{"scenario.yaml", &scenario.yaml},
                                    std::pair{"trajectories.csv", &scenario.trajectories_csv}}) {
     if (!WriteFile(folder / name, *text)) {
-      return Fail((folder / name).string() + ": cannot be written");
+      return ImportFailed((folder / name).string() + ": cannot be written");
     }
   }
-  Report({{"scenario", (folder / "scenario.yaml").string()},
-          {"ego", scenario.ego},
-          {"seconds", scenario.duration_s},
-          {"vehicles", scenario.vehicles},
-          {"buildings", scenario.buildings}},
-         as_json);
+  TellFigures({{"scenario", (folder / "scenario.yaml").string()},
+               {"ego", scenario.ego},
+               {"seconds", scenario.duration_s},
+               {"vehicles", scenario.vehicles},
+               {"buildings", scenario.buildings}},
+              as_json);
   return 0;
 }
 
