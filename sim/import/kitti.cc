@@ -29,8 +29,23 @@ bool ReadNumber(std::string_view word, double& value) {
   return fault == std::errc() && end == word.data() + word.size() && std::isfinite(value);
 }
 
-std::string Where(const std::string& path, int line) {
-  return path + ":" + std::to_string(line) + ": ";
+// Hands the words of every line that has any to `take`, which says what is wrong with them or "".
+template <class Take>
+bool ForEachLine(const std::string& path, std::string& error, const Take& take) {
+  std::ifstream file(path);
+  if (!file) {
+    error = path + ": cannot be read";
+    return false;
+  }
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const auto words = Words(line);
+    const std::string problem = words.empty() ? "" : take(words);
+    if (problem.empty()) continue;
+    error = path + ":" + std::to_string(number) + ": " + problem;
+    return false;
+  }
+  return true;
 }
 
 // Columns 0 (frame), 1 (track), 3.. of a label.
@@ -61,83 +76,55 @@ bool ParseLabel(const std::vector<std::string_view>& words, KittiLabel& label) {
 }  // namespace
 
 bool ReadKittiLabels(const std::string& path, std::vector<KittiLabel>& labels, std::string& error) {
-  std::ifstream file(path);
-  if (!file) {
-    error = path + ": cannot be read";
-    return false;
-  }
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const auto words = Words(line);
-    if (words.empty()) continue;
+  const auto take = [&](const std::vector<std::string_view>& words) -> std::string {
     if (words.size() != 17 && words.size() != 18) {
-      error = Where(path, number) + "has " + std::to_string(words.size()) +
-              " columns; a tracking label has 17";
-      return false;
+      return "has " + std::to_string(words.size()) + " columns; a tracking label has 17";
     }
-    if (words[2] == "DontCare") continue;
+    if (words[2] == "DontCare") return "";
     KittiLabel label;
-    if (!ParseLabel(words, label)) {
-      error = Where(path, number) + "is no label";
-      return false;
-    }
+    if (!ParseLabel(words, label)) return "is no label";
     const bool is_solid = label.height_m > 0.0 && label.width_m > 0.0 && label.length_m > 0.0;
-    if (!is_solid) {
-      error = Where(path, number) + "an object without size";
-      return false;
-    }
+    if (!is_solid) return "an object without size";
     labels.push_back(std::move(label));
-  }
+    return "";
+  };
+  if (!ForEachLine(path, error, take)) return false;
   if (labels.empty()) error = path + ": holds no labelled object";
   return !labels.empty();
 }
 
 bool ReadKittiCamera(const std::string& path, KittiCamera& camera, std::string& error) {
-  std::ifstream file(path);
-  if (!file) {
-    error = path + ": cannot be read";
-    return false;
-  }
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const auto words = Words(line);
-    if (words.empty() || (words[0] != "P2:" && words[0] != "P2")) continue;
+  bool is_found = false;
+  const auto take = [&](const std::vector<std::string_view>& words) -> std::string {
+    if (is_found || (words[0] != "P2:" && words[0] != "P2")) return "";
     double values[12] = {};
     bool is_good = words.size() == 13;
     for (std::size_t i = 0; is_good && i < 12; ++i) is_good = ReadNumber(words[i + 1], values[i]);
-    if (!is_good || values[0] <= 1.0 || values[5] <= 1.0) {
-      error = Where(path, number) + "P2 is no projection of 3 x 4";
-      return false;
-    }
+    if (!is_good || values[0] <= 1.0 || values[5] <= 1.0) return "P2 is no projection of 3 x 4";
     camera = {values[0], values[5], values[2], values[6], values[3] / values[0]};
-    return true;
-  }
-  error = path + ": has no line P2:";
-  return false;
+    is_found = true;
+    return "";
+  };
+  if (!ForEachLine(path, error, take)) return false;
+  if (!is_found) error = path + ": has no line P2:";
+  return is_found;
 }
 
 bool ReadKittiOxts(const std::string& path, std::vector<KittiMotion>& motion, std::string& error) {
   constexpr std::size_t kForwardVelocity = 8;  // Columns of the development kit's readme.
   constexpr std::size_t kTurnAboutUp = 22;
-  std::ifstream file(path);
-  if (!file) {
-    error = path + ": cannot be read";
-    return false;
-  }
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const auto words = Words(line);
-    if (words.empty()) continue;
+  const auto take = [&](const std::vector<std::string_view>& words) -> std::string {
     KittiMotion now;
     now.is_measured = true;
     if (words.size() < 25 || !ReadNumber(words[kForwardVelocity], now.speed_mps) ||
         !ReadNumber(words[kTurnAboutUp], now.yaw_rate_radps) || std::abs(now.speed_mps) > 100.0 ||
         std::abs(now.yaw_rate_radps) > 5.0) {
-      error = Where(path, number) + "is no line of oxts";
-      return false;
+      return "is no line of oxts";
     }
     motion.push_back(now);
-  }
+    return "";
+  };
+  if (!ForEachLine(path, error, take)) return false;
   if (motion.empty()) error = path + ": is empty";
   return !motion.empty();
 }
