@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/extrinsics/mounting_parameters.h"
 
-#include <algorithm>
-#include <cctype>
-
 namespace v2vouch {
 namespace {
-
-std::string Lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 constexpr double kDegrees = 180.0 / kPi;
 
@@ -28,13 +20,13 @@ MountingParameters::MountingParameters(const VehicleConfig& vehicle, const Mount
         {sensor + "." + quantity, sensor, prior, prior_std, to_unit, is_anchor, false});
   };
   for (const RadarConfig& radar : vehicle.radars) {
-    sensor = "radar_" + Lower(radar.name);
+    sensor = "radar_" + SensorKey(radar.name);
     add("x_m", radar.x_m, priors.place_m);
     add("y_m", radar.y_m, priors.place_m);
     add("yaw_deg", radar.yaw_rad, priors.angle_rad, kDegrees);
   }
   for (const CameraConfig& camera : vehicle.cameras) {
-    sensor = "camera_" + Lower(camera.name);
+    sensor = "camera_" + SensorKey(camera.name);
     add("x_m", camera.x_m, priors.place_m);
     add("y_m", camera.y_m, priors.place_m);
     for (auto d = descriptions_.end() - 2; d != descriptions_.end(); ++d) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calibrated values in the place of configured ones.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <string_view>
@@ -112,12 +111,6 @@ Target TargetOf(std::string_view name, VehicleConfig& vehicle) {
 }
 
 }  // namespace
-
-std::string SensorKey(std::string name) {
-  std::ranges::transform(name, name.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name;
-}
 
 bool ApplyCalibration(const CalibrationFile& calibration, VehicleConfig& vehicle,
                       std::vector<std::string>& problems) {

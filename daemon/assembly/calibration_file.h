@@ -42,9 +42,6 @@ struct CalibrationFile {
   }
 };
 
-/// A configured sensor's name as parameters spell it: in lower case.
-std::string SensorKey(std::string name);
-
 /// What is wrong with a calibration whatever car it is for: version, names, numbers that are no
 /// numbers, standard deviations, a covariance that is none. `name` stands in front of problems.
 void CheckCalibration(const CalibrationFile& calibration, const std::string& name,

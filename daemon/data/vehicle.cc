@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/data/vehicle.h"
 
+#include <algorithm>
+#include <cctype>
+
 namespace v2vouch {
+
+std::string SensorKey(std::string name) {
+  std::ranges::transform(name, name.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name;
+}
 
 std::vector<RadarConfig> VehicleConfig::DefaultRadars() {
   RadarConfig front;

@@ -128,6 +128,9 @@ struct CameraConfig {
   }
 };
 
+/// A sensor's name as calibrations and scenarios spell it behind radar_ or camera_: in lower case.
+std::string SensorKey(std::string name);
+
 /// The car: its body, its sensors, where its GNSS antenna sits, and what its own instruments are
 /// known to be off by. Defaults are the shipped vehicle (daemon/config/vehicle.yaml), which the
 /// shipped scenarios drive too.

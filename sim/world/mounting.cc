@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world/mounting.h"
 
-#include <algorithm>
-#include <cctype>
-
 namespace v2vouch::sim {
 namespace {
 
-std::string Lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 RadarConfig* FindRadar(VehicleConfig& vehicle, const std::string& sensor) {
   for (RadarConfig& radar : vehicle.radars) {
-    if (sensor == "radar_" + Lower(radar.name)) return &radar;
+    if (sensor == "radar_" + SensorKey(radar.name)) return &radar;
   }
   return nullptr;
 }
 
 CameraConfig* FindCamera(VehicleConfig& vehicle, const std::string& sensor) {
   for (CameraConfig& camera : vehicle.cameras) {
-    if (sensor == "camera_" + Lower(camera.name)) return &camera;
+    if (sensor == "camera_" + SensorKey(camera.name)) return &camera;
   }
   return nullptr;
 }
