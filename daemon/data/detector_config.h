@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "daemon/base/visit.h"
-#include "daemon/data/input.h"
+#include "daemon/data/object_class.h"
 
 namespace v2vouch {
 
@@ -23,14 +23,7 @@ struct NetworkClass {
   template <class Archive>
   void Visit(Archive& a) {
     a.Field("id", id, {.at_least = 0, .at_most = 9999});
-    a.Choice("class", object_class,
-             {{"car", ObjectClass::kCar},
-              {"van", ObjectClass::kVan},
-              {"truck", ObjectClass::kTruck},
-              {"bus", ObjectClass::kBus},
-              {"motorcycle", ObjectClass::kMotorcycle},
-              {"pedestrian", ObjectClass::kPedestrian},
-              {"cyclist", ObjectClass::kCyclist}});
+    VisitObjectClass(a, object_class);
   }
 };
 

@@ -7,7 +7,7 @@
 
 #include "daemon/base/angle.h"
 #include "daemon/base/visit.h"
-#include "daemon/data/input.h"
+#include "daemon/data/object_class.h"
 #include "daemon/data/vehicle.h"
 #include "sim/world/attack_spec.h"
 #include "sim/world/radio_specs.h"
@@ -151,25 +151,13 @@ struct VehicleSpec {
   template <class Archive>
   void Visit(Archive& a) {
     a.Field("id", id, {.at_least = 1, .at_most = 4e9});
-    VisitClass(a, object_class);
+    VisitObjectClass(a, object_class);
     a.Field("length_m", length_m, {.at_least = 0.0, .at_most = 30.0});
     a.Field("width_m", width_m, {.at_least = 0.0, .at_most = 4.0});
     a.Field("height_m", height_m, {.at_least = 0.0, .at_most = 5.0});
     a.Field("v2v", v2v);
     a.Field("drive", drive);
     a.Field("sender", sender);
-  }
-
-  template <class Archive>
-  static void VisitClass(Archive& a, ObjectClass& value) {
-    a.Choice("class", value,
-             {{"car", ObjectClass::kCar},
-              {"van", ObjectClass::kVan},
-              {"truck", ObjectClass::kTruck},
-              {"bus", ObjectClass::kBus},
-              {"motorcycle", ObjectClass::kMotorcycle},
-              {"pedestrian", ObjectClass::kPedestrian},
-              {"cyclist", ObjectClass::kCyclist}});
   }
 };
 
@@ -184,7 +172,7 @@ struct ParkedSpec {
   template <class Archive>
   void Visit(Archive& a) {
     a.Field("id", id, {.at_least = 1, .at_most = 4e9});
-    VehicleSpec::VisitClass(a, object_class);
+    VisitObjectClass(a, object_class);
     a.Field("x_m", x_m, {.at_least = -1e5, .at_most = 1e5});
     a.Field("y_m", y_m, {.at_least = -1e5, .at_most = 1e5});
     a.Degrees("yaw_deg", yaw_rad, {.at_least = -360.0, .at_most = 360.0});
