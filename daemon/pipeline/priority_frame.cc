@@ -14,8 +14,9 @@ namespace {
 
 // The PRIORITY filter is never allowed this far from a LOCAL track that is being seen.
 constexpr double kApart_m = 0.7;
-constexpr double kMostSlack_m =
-    1.0;  // A bridge is explained by a track, but not from the next lane.
+// A bridge is explained by a track, but not from the next lane.
+constexpr double kMostSlack_m = 1.0;
+constexpr double kMostBias = 0.95;  // Of what a bias may be: the filter stops there.
 // A vehicle of which a sensor has had but a part so lately may be misjudged by that part.
 constexpr double kPart_s = 0.5;
 constexpr double kPartPosition_m = 0.5;
@@ -116,6 +117,10 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
 
   const double unsupported_s = ToSeconds(frame.stamp - vehicle.last_support);
   if (vehicle.is_supported && unsupported_s > config.bridge.support_s) {
+    // Sensors and sender had come apart by more than any bias: there is nothing to carry on.
+    if (vehicle.filter.bias().norm() > kMostBias * config.filter.max_bias_m) {
+      return EndVehicle(vehicle, frame.stamp);
+    }
     vehicle.is_supported = false;
     vehicle.regained_hits = 0;
     vehicle.regaining_id = 0;

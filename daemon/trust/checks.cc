@@ -48,7 +48,8 @@ std::optional<Finding> JudgeResidual(std::string_view check, const Eigen::Vector
 
 void ResidualHistory::LookForTear(const CoObservation& observation, const TrustConfig& config) {
   const double dt_s = last_step_ ? std::max(0.0, ToSeconds(observation.stamp - *last_step_)) : 0.0;
-  const double limit_m = config.torn_m + 2.0 * observation.sensed_sigma_m +
+  // However little the sensors know, a track that strays so far is no longer the sender's.
+  const double limit_m = config.torn_m + std::min(2.0 * observation.sensed_sigma_m, config.torn_m) +
                          kJitter_s * std::abs(observation.track_speed_mps);
   if (last_step_ && dt_s <= 1.0) {
     Eigen::Vector2d step = observation.residual_O - last_residual_;

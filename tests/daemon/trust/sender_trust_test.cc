@@ -304,6 +304,29 @@ TEST(SenderTrust, AnotherVehicleTakenForTheOldOneIsTorn) {
   EXPECT_EQ(trust.state(), TrustState::kCandidate);
 }
 
+// Only a part of the vehicle is seen, then less and less for certain: the LOCAL track strays 9 m at
+// a pace of its own. However unsure it is of itself, it is not the sender's vehicle any more.
+TEST(SenderTrust, ATrackThatStraysFarIsTornHoweverUnsureItIs) {
+  SenderTrust trust = Validated();
+  for (int i = 0; i < 15; ++i) {
+    CoObservation observation = Residual(0.5, 0.0);
+    observation.stamp = At(0.1 * i);
+    ASSERT_TRUE(trust.OnCoObservation(observation, true, kConfig));
+  }
+  double strayed_m = 0.0;
+  for (int i = 15; i < 60 && trust.is_relied_on(); ++i) {
+    strayed_m = 0.3 * (i - 15);
+    CoObservation observation = Residual(0.5, strayed_m);
+    observation.stamp = At(0.1 * i);
+    observation.velocity_residual_O = Eigen::Vector2d(0.0, 3.0);
+    observation.is_partial = true;
+    observation.sensed_sigma_m = 3.0;
+    trust.OnCoObservation(observation, true, kConfig);
+  }
+  EXPECT_EQ(trust.state(), TrustState::kCandidate);
+  EXPECT_LT(strayed_m, 9.0);
+}
+
 TEST(SenderTrust, AShiftThatAllShareIsNotTheSendersFault) {
   const auto shifted = [](double) {
     CoObservation observation = Residual(6.0, 0.0);
