@@ -80,7 +80,8 @@ void PairEvidence::Add(const PairObservation& observation, const AssociationConf
         LogNormal(*observation.yaw_residual_rad, observation.yaw_sigma_rad) + std::log(2.0 * kPi);
   }
   fading_ = fading_ * std::exp(-dt_s / config.forgetting_s) + std::clamp(gain, kMaxLoss, kMaxGain);
-  level_ = 0.5 * bias_.dot((B0 + observation.stale).inverse() * bias_);
+  level_information_ = (B0 + observation.stale).inverse();
+  level_ = 0.5 * bias_.dot(level_information_ * bias_);
 }
 
 bool PairEvidence::is_nis_consistent() const {

@@ -50,6 +50,11 @@ class PairEvidence {
   /// track, at whatever distance, agrees with it message by message once its offset is learnt:
   /// however long the agreement lasts, only the level tells the neighbour from the track itself.
   [[nodiscard]] double level() const { return level_; }
+  /// The same, were the sender another vehicle, so far from the track [m, axes of O].
+  [[nodiscard]] double LevelBeside(const Eigen::Vector2d& offset_O) const {
+    const Eigen::Vector2d b = bias_ - offset_O;
+    return 0.5 * b.dot(level_information_ * b);
+  }
   [[nodiscard]] int observations() const { return observations_; }
   [[nodiscard]] Timestamp first() const { return first_; }
   [[nodiscard]] Timestamp last() const { return last_; }
@@ -69,6 +74,7 @@ class PairEvidence {
   int outlier_run_ = 0;
   double fading_ = 0.0;
   double level_ = 0.0;
+  Eigen::Matrix2d level_information_ = Eigen::Matrix2d::Identity();  // (B0 + stale)^-1
   double mean_nis_ = 0.0;
   Eigen::Vector2d bias_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d bias_covariance_ = Eigen::Matrix2d::Identity();

@@ -268,20 +268,21 @@ void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
   const Timestamp last_hit = sensed->track.LastHit();
   const bool is_seen = ToSeconds(here.stamp - last_hit) <= config.bridge.support_s;
   const PairEvidence& evidence = pair->evidence;
-  if (!link.trust.TryValidate({.stamp = here.stamp,
-                               .co_observations = evidence.observations(),
-                               .span_s = evidence.span_s(),
-                               .is_nis_consistent = evidence.is_nis_consistent(),
-                               .is_level_plausible = evidence.level() <= config.safe.max_level,
-                               .is_size_plausible = IsSizePlausible(
-                                   link.length_m, link.width_m, sensed->track.extent, config.trust),
-                               .margin = pairs_.Margin(*pair),
-                               .min_margin = config.safe.min_margin,
-                               .is_assigned = pair->is_assigned,
-                               .are_sensors_sure = sensed->is_sure && is_seen,
-                               .is_accuracy_poor = link.is_accuracy_poor,
-                               .is_ego_gnss_suspect = alignment_.is_suspect()},
-                              config.trust)) {
+  if (!link.trust.TryValidate(
+          {.stamp = here.stamp,
+           .co_observations = evidence.observations(),
+           .span_s = evidence.span_s(),
+           .is_nis_consistent = evidence.is_nis_consistent(),
+           .is_level_plausible = evidence.level() <= config.safe.max_level,
+           .is_size_plausible =
+               IsSizePlausible(link.length_m, link.width_m, sensed->track.extent, config.trust),
+           .margin = std::min(pairs_.Margin(*pair), MarginOverUnseen(link, *pair)),
+           .min_margin = config.safe.min_margin,
+           .is_assigned = pair->is_assigned,
+           .are_sensors_sure = sensed->is_sure && is_seen,
+           .is_accuracy_poor = link.is_accuracy_poor,
+           .is_ego_gnss_suspect = alignment_.is_suspect()},
+          config.trust)) {
     return;
   }
   std::uint64_t id = PriorityId(sensed->track.id, 0);

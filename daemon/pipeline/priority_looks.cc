@@ -82,6 +82,7 @@ void PriorityPerception::LookAtClaims(const LocalFrame& frame, const VisibilityM
     if (!link.place.IsDue(frame.stamp, config.place)) continue;
     if (IsVouchedFor(link)) {
       link.place.OnVouched();
+      if (!link.trust.is_relied_on()) link.unseen = LookBeside(link, frame, map);
       continue;
     }
     link.place.OnLook(frame.stamp, LookAround(link, frame, map), config.place);

@@ -82,6 +82,11 @@ class PriorityPerception {
   [[nodiscard]] std::size_t checkpoint_bytes() const;
 
  private:
+  // Where a vehicle may stand or drive unseen, just before or behind a LOCAL track.
+  struct UnseenNeighbours {
+    std::uint64_t track_id = 0;
+    std::array<std::optional<Eigen::Vector2d>, 2> offsets_O;  // From the track's centre.
+  };
   // One sender near a track.
   struct Link {
     SenderId sender = 0;
@@ -94,6 +99,7 @@ class PriorityPerception {
     std::optional<double> width_m;
     ClaimedPlace place;
     SharedPlace shared;
+    UnseenNeighbours unseen;         // Of the LOCAL track that it may be.
     std::uint64_t withdrawn_id = 0;  // LOCAL track it was relied on with when it was withdrawn.
     std::uint64_t compared_id = 0;   // LOCAL track of the last residual; 0 = none.
     int breaks = 0;                  // Above 0: its messages lately did not continue each other.
@@ -156,6 +162,9 @@ class PriorityPerception {
   [[nodiscard]] bool IsVouchedFor(const Link& link) const;
   [[nodiscard]] bool IsPlaceShared(const Link& link, Timestamp now) const;
   [[nodiscard]] bool IsOnAnotherLevel(const Link& link) const;
+  [[nodiscard]] UnseenNeighbours LookBeside(const Link& link, const LocalFrame& frame,
+                                            const VisibilityMap& map) const;
+  [[nodiscard]] static double MarginOverUnseen(const Link& link, const PairTable::Pair& pair);
   void JudgeCommonMode(Timestamp now);
 
   // Claim.

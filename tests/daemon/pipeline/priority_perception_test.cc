@@ -82,6 +82,7 @@ class Scene {
       occluders.push_back(
           {.id = 1, .centre_O = {15.0, 0.0}, .yaw_rad = 0.5 * kPi, .length_m = 120.0});
     }
+    if (screen) occluders.push_back(*screen);
     for (Car& car : cars) {
       if (!car.is_seen && !car.is_coasting) continue;
       if (car.radar_hits == 0) car.start = now;
@@ -193,6 +194,7 @@ class Scene {
   Outputs outputs;
   std::vector<Car> cars;
   bool has_wall = false;
+  std::optional<Occluder> screen;
 };
 
 Car OncomingCar(double x_m = 70.0) {
@@ -315,6 +317,29 @@ TEST(PriorityPerception, StandingNeighbourIsNotTheCarInFront) {
       scene.Honest(1, {0.0, -5.5});
       EXPECT_TRUE(scene.Priority().empty()) << "seed " << seed;
     });
+  }
+}
+
+// A claim 3 m behind a standing car may be that car's, or that of the next in the queue, where none
+// can be seen. Where the place behind is in clear view and empty, or the claim is nearer, it is
+// not.
+TEST(PriorityPerception, WhoMayBeTheUnseenNextInTheQueueIsNotValidated) {
+  struct Case {
+    double behind_m;
+    bool has_screen;
+    bool is_validated;
+  };
+  for (const Case& now : {Case{3.0, true, false}, Case{3.0, false, true}, Case{1.0, true, true}}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      Scene scene(seed);
+      scene.cars = {{.local_id = 7, .p = {40.0, 3.5}, .yaw_rad = 0.5 * kPi, .speed_mps = 0.0}};
+      if (now.has_screen) {
+        scene.screen = {.id = 1, .centre_O = {20.0, -2.5}, .yaw_rad = 0.5 * kPi, .length_m = 4.5};
+      }
+      scene.Run(6.0, [&] { scene.Honest(1, {0.0, -now.behind_m}); });
+      EXPECT_EQ(scene.Priority().size() == 1u, now.is_validated)
+          << now.behind_m << " m, screen " << now.has_screen << ", seed " << seed;
+    }
   }
 }
 
@@ -514,6 +539,29 @@ TEST(PriorityPerception, ANeighbourInTheNextLaneDoesNotExplainABridgeInClearView
     scene.Run(0.05, [&] { scene.Honest(1); });
   }
   EXPECT_LT(ToSeconds(scene.now - gone), 2.5);
+}
+
+// Sensors and sender have come apart by more than any bias, and no check was there to part them:
+// hidden, the vehicle would be carried beside where its sender has it.
+TEST(PriorityPerception, NothingIsBridgedOnABiasThatIsNone) {
+  PriorityConfig config;
+  config.trust.level_withdraw_m = config.trust.drift_withdraw_m = 50.0;
+  config.trust.torn_m = config.trust.leaving_m = 20.0;
+  for (const double apart_m : {3.0, 8.0}) {
+    Scene scene(12, config);
+    scene.cars = {OncomingCar(95.0)};
+    scene.Run(3.0, [&] { scene.Honest(1, {0.0, 0.0}); });
+    double left_m = 0.0;
+    scene.Run(10.0, [&] {
+      left_m = std::min(apart_m, left_m + 0.05);
+      scene.Honest(1, {0.0, left_m});
+    });
+    ASSERT_EQ(scene.Priority().size(), 1u);
+    Hide(scene);
+    scene.Run(0.5, [&] { scene.Honest(1, {0.0, left_m}); });
+    EXPECT_EQ(scene.Priority().size(), apart_m < 5.0 ? 1u : 0u);
+    EXPECT_TRUE(scene.outputs.reports.empty());
+  }
 }
 
 TEST(PriorityPerception, ABridgeEndsFarFromTheEgo) {
