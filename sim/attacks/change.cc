@@ -20,8 +20,8 @@ void Change::Pass(const Circumstances& now, Message& message) {
     ((blocks ? Alter(*blocks, moment, message) : void()), ...);
   };
   alter(spec_.offset, spec_.drift, spec_.brake, spec_.freeze, spec_.eventual_stop, spec_.speed,
-        spec_.heading, spec_.acceleration, spec_.size, spec_.accuracy, spec_.mirror, spec_.delay,
-        spec_.replay, spec_.identity, spec_.impersonate);
+        spec_.heading, spec_.acceleration, spec_.size, spec_.accuracy, spec_.mirror, spec_.rotate,
+        spec_.delay, spec_.replay, spec_.identity, spec_.impersonate);
   message.is_attack = message.is_attack || acts_;
 }
 

@@ -46,6 +46,7 @@ class Change {
   void Alter(const FreezeSpec& spec, const Moment& now, Message& message);
   void Alter(const EventualStopSpec& spec, const Moment& now, Message& message);
   void Alter(const MirrorSpec& spec, const Moment& now, Message& message);
+  void Alter(const RotateSpec& spec, const Moment& now, Message& message);
   // Other claims (change_claims.cc).
   void Alter(const SpeedChangeSpec& spec, const Moment& now, Message& message);
   void Alter(const HeadingChangeSpec& spec, const Moment& now, Message& message);

@@ -102,4 +102,11 @@ void Change::Alter(const MirrorSpec& spec, const Moment& now, Message& message) 
   message.said.centre += 2.0 * to_centre * LeftOf(Direction(message.said.yaw_rad));
 }
 
+void Change::Alter(const RotateSpec& spec, const Moment& now, Message& message) {
+  const Vec2 ego = scene_.world.At(now.time_s).ego.axle;
+  const Vec2 way = message.said.centre - ego;
+  const Vec2 turn = Direction(spec.about_ego_rad);
+  message.said.centre = ego + turn.x() * way + turn.y() * LeftOf(way);
+}
+
 }  // namespace v2vouch::sim

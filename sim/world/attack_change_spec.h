@@ -217,6 +217,17 @@ struct MirrorSpec {
   }
 };
 
+/// Turned about where the ego's rear axle truly is at the message's time, counter-clockwise
+/// positive; heading and speed stay: as if the ego's sensors looked to the side.
+struct RotateSpec {
+  double about_ego_rad = 0.0;
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Degrees("about_ego_deg", about_ego_rad, {.at_least = -180.0, .at_most = 180.0});
+  }
+};
+
 /// Says what was so a while ago.
 struct DelaySpec {
   double low_s = 1.0;    ///< Age, drawn once from here ...
@@ -312,6 +323,7 @@ struct ChangeSpec {
   std::optional<SizeChangeSpec> size;
   std::optional<AccuracySpec> accuracy;
   std::optional<MirrorSpec> mirror;
+  std::optional<RotateSpec> rotate;
   std::optional<DelaySpec> delay;
   std::optional<ReplaySpec> replay;
   std::optional<IdentityChangeSpec> identity;
@@ -332,6 +344,7 @@ struct ChangeSpec {
     a.Field("size", size);
     a.Field("accuracy", accuracy);
     a.Field("mirror", mirror);
+    a.Field("rotate", rotate);
     a.Field("delay", delay);
     a.Field("replay", replay);
     a.Field("identity", identity);

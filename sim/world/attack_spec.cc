@@ -27,7 +27,7 @@ void CheckRange(double low, double high, const char* names, const std::string& w
 void CheckChange(const ChangeSpec& c, const std::string& where,
                  std::vector<std::string>& problems) {
   if (Given(c.offset, c.drift, c.brake, c.freeze, c.eventual_stop, c.speed, c.heading,
-            c.acceleration, c.size, c.accuracy, c.mirror, c.delay, c.replay, c.identity,
+            c.acceleration, c.size, c.accuracy, c.mirror, c.rotate, c.delay, c.replay, c.identity,
             c.impersonate, c.rate) != 1) {
     problems.push_back(where + ": must name exactly one block");
   }

@@ -147,6 +147,21 @@ TEST_F(Blocks, MirrorGoesAcrossTheRoutesCentreLine) {
   EXPECT_NEAR(Off(Pass(by_hand, 5.0)).y(), 2.0, 1e-6);
 }
 
+TEST_F(Blocks, RotateTurnsThePlaceAloneAboutTheEgosRearAxle) {
+  ChangeSpec spec;
+  spec.rotate = RotateSpec{.about_ego_rad = 0.5 * kPi};
+  Change change = Make(spec);
+  const Message turned = Pass(change, 5.0);
+  const Message honest = Honest(5.0);
+  const Vec2 axle = world_->At(5.0).ego.axle;
+  const Vec2 way = honest.said.centre - axle;
+  EXPECT_NEAR((turned.said.centre - axle - Vec2(-way.y(), way.x())).norm(), 0.0, 1e-9);
+  EXPECT_EQ(turned.said.yaw_rad, honest.said.yaw_rad);
+  EXPECT_EQ(turned.said.speed_mps, honest.said.speed_mps);
+  EXPECT_TRUE(turned.is_attack);
+  EXPECT_GT(way.norm(), 10.0);  // Else it would be no test.
+}
+
 TEST_F(Blocks, SpeedHeadingAccelerationSizeAndAccuracyAreWhatTheyAreSetTo) {
   ChangeSpec spec;
   spec.speed.emplace();
