@@ -94,6 +94,26 @@ TEST_F(Calibrate, BsmsNeverMoveAMounting) {
   }
 }
 
+TEST_F(Calibrate, ALiarLeavesStageAAsItIsBitForBit) {
+  std::ofstream(File("liar.yaml")) << "attacks:\n  - who: {vehicles: [1]}\n"
+                                      "    change: [{rotate: {about_ego_deg: 3}}]\n";
+  Drive("calibration_drive", "--duration 40 --seed 3", "a.lcm");
+  Drive("calibration_drive", ("--duration 40 --seed 3 --with '" + File("liar.yaml") + "'").c_str(),
+        "b.lcm");
+  const auto result = [&](const char* log) {
+    const Finished done =
+        Calibrated("'" + File(log) + "'" + kPoints + " --out '" + File("c.yaml") + "' --json");
+    EXPECT_EQ(done.code, 0) << done.output;
+    return nlohmann::json::parse(done.output);
+  };
+  const auto honest = result("a.lcm");
+  const auto attacked = result("b.lcm");
+  for (const char* of_stage_a : {"accepted", "parameters", "covariance", "weak", "chi2"}) {
+    EXPECT_EQ(honest[of_stage_a], attacked[of_stage_a]) << of_stage_a;
+  }
+  EXPECT_NE(honest["remotes"], attacked["remotes"]);  // Stage B did hear it.
+}
+
 TEST_F(Calibrate, WhatIsNotAcceptedReplacesNothing) {
   const std::string out = File("calibration.yaml");
   std::ofstream(out) << "what was there before";
