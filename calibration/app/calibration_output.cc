@@ -37,7 +37,9 @@ Json RemoteJson(const RemoteSolution& s) {
           {"reference_offset_std_m", s.offset_std_m},
           {"chi2_per_dof", s.chi_square_per_dof},
           {"wander_chi2_per_dof", s.wander_chi_square},
-          {"slope_mps", s.slope_mps}};
+          {"slope_mps", s.slope_mps},
+          {"turn_deg", ToDegrees(s.turn_rad)},
+          {"turn_std_deg", ToDegrees(s.turn_std_rad)}};
 }
 
 }  // namespace

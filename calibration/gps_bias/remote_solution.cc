@@ -12,97 +12,24 @@
 #include <memory>
 #include <numeric>
 
+#include "calibration/gps_bias/remote_terms.h"
+
 namespace v2vouch {
 namespace {
 
+using remote::Block;
+using remote::BlockCost;
+using remote::Blocks;
+using remote::ConstantPrior;
+using remote::kConstant;
+using remote::KnotPrior;
+using remote::KnotStep;
+using remote::TurnPrior;
+
 constexpr int kIterations = 20;
-constexpr double kStanding_mps = 0.5;  // Slower, the heading is not that of the velocity.
 constexpr double kSlopePrior_mps = 1.0;
-
-// The pairs of one second, as one.
-struct Block {
-  double time_s = 0.0;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
-  Eigen::Vector2d heading = Eigen::Vector2d::Zero();
-  int pairs = 0;
-};
-
-std::vector<Block> Blocks(const std::vector<RemotePair>& pairs, double white_hz) {
-  std::map<std::int64_t, Block> by_second;
-  const Timestamp start = pairs.front().residual.stamp;
-  for (const RemotePair& pair : pairs) {
-    const double time_s = ToSeconds(pair.residual.stamp - start);
-    Block& block = by_second[static_cast<std::int64_t>(std::floor(time_s))];
-    ++block.pairs;
-    block.time_s += time_s;
-    block.mean += pair.residual.claimed_minus_sensed_en;
-    block.covariance += pair.residual.covariance;
-    block.velocity += pair.velocity_en_mps;
-    const double speed = pair.velocity_en_mps.norm();
-    if (speed > kStanding_mps) block.heading += pair.velocity_en_mps / speed;
-  }
-  std::vector<Block> blocks;
-  for (auto& [second, block] : by_second) {
-    const double n = block.pairs;
-    block.time_s /= n;
-    block.mean /= n;
-    block.velocity /= n;
-    block.heading /= n;
-    block.covariance /= n * std::min(n, white_hz);
-    blocks.push_back(block);
-  }
-  return blocks;
-}
-
-// b 0..1, tau 2, c 3, slope 4..5 of the constant part; knots beside it.
-constexpr int kConstant = 6;
-
-struct BlockCost {
-  Block block;
-  Eigen::Matrix2d whiten;
-  double share;     // Between the two knots.
-  double middle_s;  // The slope turns round it.
-  template <class T>
-  bool operator()(const T* x, const T* from, const T* to, T* out) const {
-    T off[2];
-    for (int i = 0; i < 2; ++i) {
-      off[i] = T(block.mean[i]) - x[i] - x[4 + i] * T(block.time_s - middle_s) -
-               T(1.0 - share) * from[i] - T(share) * to[i] - x[3] * T(block.heading[i]) +
-               x[2] * T(block.velocity[i]);
-    }
-    for (int i = 0; i < 2; ++i) out[i] = T(whiten(i, 0)) * off[0] + T(whiten(i, 1)) * off[1];
-    return true;
-  }
-};
-
-struct ConstantPrior {
-  std::array<double, kConstant> sigma;
-  template <class T>
-  bool operator()(const T* x, T* out) const {
-    for (std::size_t i = 0; i < kConstant; ++i) out[i] = x[i] / T(sigma[i]);
-    return true;
-  }
-};
-
-struct KnotPrior {
-  double sigma;
-  template <class T>
-  bool operator()(const T* knot, T* out) const {
-    for (int i = 0; i < 2; ++i) out[i] = knot[i] / T(sigma);
-    return true;
-  }
-};
-
-struct KnotStep {
-  double keep, sigma;
-  template <class T>
-  bool operator()(const T* from, const T* to, T* out) const {
-    for (int i = 0; i < 2; ++i) out[i] = (to[i] - T(keep) * from[i]) / T(sigma);
-    return true;
-  }
-};
+constexpr double kAtBoundSigmas = 2.0;
+constexpr double kTurnPrior_rad = 0.5;
 
 double Spread(std::vector<double> values) {
   std::ranges::sort(values);
@@ -132,7 +59,31 @@ Diversity DiversityOf(const std::vector<RemotePair>& pairs) {
           0.5 * (square / n - (mean / n).squaredNorm())};
 }
 
-void Judge(const Diversity& diversity, double slope_sigmas, const RemoteRules& rules,
+// How clearly what no receiver does is seen, in standard deviations.
+struct Oddities {
+  double slope_sigmas = 0.0;
+  double turn_sigmas = 0.0;
+};
+
+// Of the first `wanted` unknowns, the others eliminated.
+Eigen::MatrixXd CovarianceOf(ceres::Problem& problem, const std::vector<double*>& unknowns,
+                             Eigen::Index wanted) {
+  ceres::Problem::EvaluateOptions evaluate;
+  evaluate.parameter_blocks = unknowns;
+  ceres::CRSMatrix crs;
+  problem.Evaluate(evaluate, nullptr, nullptr, nullptr, &crs);
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(crs.num_rows, crs.num_cols);
+  for (int row = 0; row < crs.num_rows; ++row) {
+    for (int i = crs.rows[static_cast<std::size_t>(row)];
+         i < crs.rows[static_cast<std::size_t>(row) + 1]; ++i) {
+      J(row, crs.cols[static_cast<std::size_t>(i)]) = crs.values[static_cast<std::size_t>(i)];
+    }
+  }
+  const Eigen::MatrixXd H = J.transpose() * J;
+  return H.ldlt().solve(Eigen::MatrixXd::Identity(H.rows(), wanted)).topRows(wanted);
+}
+
+void Judge(const Diversity& diversity, const Oddities& odd, const RemoteRules& rules,
            RemoteSolution& s) {
   const auto say = [&](CalibrationVerdict verdict, const char* reason) {
     s.verdict = verdict;
@@ -150,8 +101,18 @@ void Judge(const Diversity& diversity, double slope_sigmas, const RemoteRules& r
   if (s.wander_chi_square > rules.noise.null_chi_square) {
     return say(CalibrationVerdict::kRejected, "wanders as no receiver does");
   }
-  if (s.slope_mps > rules.slope_mps && slope_sigmas > rules.slope_sigma) {
+  if (s.slope_mps > rules.slope_mps && odd.slope_sigmas > rules.slope_sigma) {
     return say(CalibrationVerdict::kRejected, "drifts as no receiver does");
+  }
+  if (std::abs(s.turn_rad) > rules.turn_rad && odd.turn_sigmas > rules.turn_sigma) {
+    return say(CalibrationVerdict::kRejected, "turned about the ego as no receiver is");
+  }
+  // What the messages alone say of the latency; the prior draws a liar's below the limit.
+  const double told = 1.0 - std::pow(s.latency_std_s / rules.latency_sigma_s, 2);
+  const double latest_s = (std::abs(s.latency_s) / std::max(told, 0.1)) +
+                          kAtBoundSigmas * s.latency_std_s / std::sqrt(std::max(told, 0.1));
+  if (std::abs(s.latency_s) > 0.5 * rules.max_latency_s && latest_s > rules.max_latency_s) {
+    return say(CalibrationVerdict::kAtBound, "as late as a sender may be, or later");
   }
   if (diversity.bearing_rad < rules.min_bearing_spread_rad &&
       diversity.range_m < rules.min_range_spread_m) {
@@ -172,7 +133,7 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
   s.sender = sender;
   s.pairs = static_cast<int>(pairs.size());
   if (pairs.empty()) {
-    Judge({}, 0.0, rules, s);
+    Judge({}, {}, rules, s);
     return s;
   }
   const std::vector<Block> blocks = Blocks(pairs, rules.noise.white_hz);
@@ -183,6 +144,7 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
   const double keep = std::exp(-knot_s / rules.noise.wander_decay_s);
   const KnotStep step{keep, rules.noise.wander_sigma_m * std::sqrt(1.0 - keep * keep)};
   std::array<double, kConstant> x{};
+  double turn_rad = 0.0;
   std::vector<std::array<double, 2>> knots(static_cast<std::size_t>(blocks.back().time_s / knot_s) +
                                            2);
   ceres::HuberLoss huber(rules.noise.huber);
@@ -198,6 +160,10 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
   problem.AddResidualBlock(
       new ceres::AutoDiffCostFunction<KnotPrior, 2, 2>(new KnotPrior{rules.noise.wander_sigma_m}),
       nullptr, knots[0].data());
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<TurnPrior, 1, 1>(new TurnPrior{kTurnPrior_rad}), nullptr,
+      &turn_rad);
+  problem.SetParameterBlockConstant(&turn_rad);
   std::vector<ceres::ResidualBlockId> steps;
   for (std::size_t k = 1; k < knots.size(); ++k) {
     steps.push_back(problem.AddResidualBlock(
@@ -211,9 +177,9 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
     const Eigen::Matrix2d whiten =
         block.covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
     data.push_back(problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<BlockCost, 2, kConstant, 2, 2>(
+        new ceres::AutoDiffCostFunction<BlockCost, 2, kConstant, 1, 2, 2>(
             new BlockCost{block, whiten, at - static_cast<double>(k), 0.5 * blocks.back().time_s}),
-        &huber, x.data(), knots[k].data(), knots[k + 1].data()));
+        &huber, x.data(), &turn_rad, knots[k].data(), knots[k + 1].data()));
   }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
@@ -223,22 +189,9 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
 
-  // Covariance of the constant part, knots eliminated.
-  ceres::Problem::EvaluateOptions evaluate;
-  evaluate.parameter_blocks.push_back(x.data());
-  for (auto& knot : knots) evaluate.parameter_blocks.push_back(knot.data());
-  ceres::CRSMatrix crs;
-  problem.Evaluate(evaluate, nullptr, nullptr, nullptr, &crs);
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(crs.num_rows, crs.num_cols);
-  for (int row = 0; row < crs.num_rows; ++row) {
-    for (int i = crs.rows[static_cast<std::size_t>(row)];
-         i < crs.rows[static_cast<std::size_t>(row) + 1]; ++i) {
-      J(row, crs.cols[static_cast<std::size_t>(i)]) = crs.values[static_cast<std::size_t>(i)];
-    }
-  }
-  const Eigen::MatrixXd H = J.transpose() * J;
-  const Eigen::MatrixXd C =
-      H.ldlt().solve(Eigen::MatrixXd::Identity(H.rows(), kConstant)).topRows<kConstant>();
+  std::vector<double*> unknowns{x.data()};
+  for (auto& knot : knots) unknowns.push_back(knot.data());
+  const Eigen::MatrixXd C = CovarianceOf(problem, unknowns, kConstant);
   double range_square = 0.0;
   for (const RemotePair& pair : pairs) range_square += pair.range_m * pair.range_m;
   range_square /= static_cast<double>(pairs.size());
@@ -252,7 +205,8 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
   s.offset_std_m = std::sqrt(C(3, 3));
   const Eigen::Vector2d slope(x[4], x[5]);
   s.slope_mps = slope.norm();
-  const double slope_sigmas = std::sqrt(slope.dot(C.block<2, 2>(4, 4).ldlt().solve(slope)));
+  Oddities odd;
+  odd.slope_sigmas = std::sqrt(slope.dot(C.block<2, 2>(4, 4).ldlt().solve(slope)));
 
   const auto squares = [&](const std::vector<ceres::ResidualBlockId>& of) {
     ceres::Problem::EvaluateOptions only;
@@ -265,7 +219,17 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
   };
   s.chi_square_per_dof = squares(data);
   s.wander_chi_square = steps.empty() ? 0.0 : squares(steps);
-  Judge(DiversityOf(pairs), slope_sigmas, rules, s);
+
+  // Once more with the sender's world free to turn about the ego. Without, a turn passes for an
+  // offset that wanders with the ego's direction; always free, it would take from what is known of
+  // the bias.
+  problem.SetParameterBlockVariable(&turn_rad);
+  ceres::Solve(solver, &problem, &summary);
+  unknowns.insert(unknowns.begin(), &turn_rad);
+  s.turn_rad = turn_rad;
+  s.turn_std_rad = std::hypot(std::sqrt(CovarianceOf(problem, unknowns, 1)(0, 0)), consider_rad);
+  odd.turn_sigmas = std::abs(s.turn_rad) / s.turn_std_rad;
+  Judge(DiversityOf(pairs), odd, rules, s);
   return s;
 }
 

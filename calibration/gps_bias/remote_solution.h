@@ -31,6 +31,8 @@ struct RemoteRules {
   double offset_sigma_m = 0.3;       ///< Of the reference point, along its heading.
   double slope_sigma = 4.5;          ///< A drift this clear ...
   double slope_mps = 0.015;          ///< ... and this fast is no receiver's.
+  double turn_sigma = 4.5;           ///< A world turned about the ego this clearly ...
+  double turn_rad = 0.0175;          ///< ... and by so much (1 degree) is none either.
   double leave_one_out_gate = 20.0;  ///< Chi-square, 2 dof: 5 in 100 000 honest ones.
   GpsBiasConfig noise;               ///< Gauss-Markov wandering, white rate, bounds.
 };
@@ -55,6 +57,8 @@ struct RemoteSolution {
   double chi_square_per_dof = 0.0;
   double wander_chi_square = 0.0;  ///< Per degree of freedom, against a receiver's wandering.
   double slope_mps = 0.0;
+  double turn_rad = 0.0;      ///< By which its world looks turned about the ego, left positive, ...
+  double turn_std_rad = 0.0;  ///< ... in a second fit in which it may be; the rest is without.
   CalibrationVerdict verdict = CalibrationVerdict::kPrior;
   std::string reason;  ///< Why it is not ESTIMATED.
   struct Block {
@@ -65,8 +69,9 @@ struct RemoteSolution {
 };
 
 /// Stage B for one sender, by Ceres. ESTIMATED: enough pairs, long and diverse enough, and off like
-/// a receiver is; WEAK: latency and bias known together only; PRIOR: too little; REJECTED: off as
-/// no receiver is (too far, drifting, wandering too much, too late): quarantine.
+/// a receiver is; WEAK: latency and bias known together only; PRIOR: too little; AT_BOUND: as late
+/// as a sender may be, and known no better; REJECTED: off as no receiver is (too far, drifting,
+/// wandering too much, too late, turned about the ego): quarantine.
 /// @param pairs of this sender, in order of time.
 /// @param consider_m what stage A's own uncertainty adds to every place alike, 1 sigma per axis at
 ///        range 0, and consider_rad per range: held, never estimated from what strangers say.

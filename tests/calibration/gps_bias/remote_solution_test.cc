@@ -26,6 +26,8 @@ struct Sender {
   double speed_change_mps = 4.0;
   double yaw_rate_radps = 0.05;
   double seconds = 150.0;
+  double swing_rad = 0.5;  // Of its bearing about its course ...
+  double swing_m = 15.0;   // ... and of its distance.
 };
 
 std::vector<RemotePair> PairsOf(const Sender& sender, SenderId id, std::uint64_t seed) {
@@ -38,8 +40,8 @@ std::vector<RemotePair> PairsOf(const Sender& sender, SenderId id, std::uint64_t
     const double yaw = 0.3 + sender.yaw_rate_radps * t;
     const double speed = 12.0 + sender.speed_change_mps * std::sin(0.1 * t);
     const Eigen::Vector2d e(std::cos(yaw), std::sin(yaw));
-    const double bearing = yaw + 0.5 * std::sin(0.03 * t);
-    const double range = 35.0 + 15.0 * std::sin(0.05 * t);
+    const double bearing = yaw + sender.swing_rad * std::sin(0.03 * t);
+    const double range = 35.0 + sender.swing_m * std::sin(0.05 * t);
     const Eigen::Vector2d place = range * Eigen::Vector2d(std::cos(bearing), std::sin(bearing));
     for (int k = 0; k < 2; ++k) {
       wander[k] = keep * wander[k] + std::sqrt(1.0 - keep * keep) *
@@ -143,6 +145,41 @@ TEST(SolveRemotes, TheAttackerIsQuarantinedAndTheHonestAreNot) {
         << solutions[1].slope_mps << " latency " << solutions[1].latency_s;
     EXPECT_EQ(solutions[2].verdict, kEstimated) << solutions[2].reason;
   }
+}
+
+// Who keeps its place ahead of the ego and turns its world by 3 degrees is off by 1.8 m to a side
+// that turns as slowly as the road: so does a receiver wander, were it not always the same side of
+// us.
+TEST(SolveRemote, AWorldTurnedAboutTheEgoIsFoundThoughTheSenderKeepsItsPlace) {
+  int rejected = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Sender sender;
+    sender.wander_m = 0.5;
+    sender.swing_rad = 0.1;
+    sender.swing_m = 8.0;
+    sender.yaw_rate_radps = 0.01;
+    sender.seconds = 300.0;
+    const RemoteSolution honest = Solve(sender, seed);
+    EXPECT_NE(honest.verdict, kRejected) << honest.reason;
+    EXPECT_LT(std::abs(honest.turn_rad), 4.0 * honest.turn_std_rad);
+    sender.turned_rad = FromDegrees(3.0);
+    const RemoteSolution liar = Solve(sender, seed);
+    EXPECT_NEAR(liar.turn_rad, FromDegrees(3.0), 4.0 * liar.turn_std_rad);
+    rejected += liar.verdict == kRejected;
+  }
+  EXPECT_GE(rejected, 12);
+}
+
+TEST(SolveRemote, AsLateAsAllowedIsNotTakenIn) {
+  Sender sender;
+  sender.latency_s = 0.49;
+  sender.wander_m = 0.5;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const RemoteSolution s = Solve(sender, seed);
+    EXPECT_TRUE(s.verdict == kAtBound || s.verdict == kRejected) << s.latency_s;
+  }
+  sender.latency_s = 0.2;
+  EXPECT_EQ(Solve(sender).verdict, kEstimated);
 }
 
 TEST(SolveRemote, TooLittleOrTooAlikeIsSaid) {
