@@ -126,20 +126,35 @@ struct Aspect {
   double cos1 = 0.0, cos2 = 0.0, sin1 = 0.0, sin2 = 0.0;
 };
 
+/// What of it is left however many vehicles pass, radar by radar: a field of view that cuts them,
+/// more reflections when nearer, boxes half hidden. Over azimuth a and range r
+///
+///     along the ray:  l0 + l1 sin a + l2 r        across:  l3 + l4 sin a + l5 r
+///
+/// Considered only: as an unknown it would be learnt from what it is to excuse.
+inline constexpr int kLean = 6;
+
 /// Parameters: radar | target; for vehicles that are no points also | offset of this chain's
-/// reflections, along and across the ray | shape.
+/// reflections, along and across the ray | shape | lean of this radar. Of such vehicles a radar's
+/// place is taken as it stands: where a vehicle reflects tells less of it than a tape measure.
 struct RadarTargetCost {
   LookPose pose;
   double measured;  ///< Range, or azimuth.
   double sigma;
   bool is_azimuth;
   Aspect aspect;
+  double range_m, sin_azimuth;  ///< Where the lean is taken.
+  double radar_x_m, radar_y_m;  ///< As it stands.
 
   template <class T>
-  bool operator()(const T* radar, const T* target, const T* offset, const T* shape, T* out) const {
-    const T along = offset[0] + shape[0] + shape[1] * T(aspect.cos1) + shape[2] * T(aspect.cos2);
-    const T across = offset[1] + shape[3] * T(aspect.sin1) + shape[4] * T(aspect.sin2);
-    return Compare(radar, target, along, across, out);
+  bool operator()(const T* radar, const T* target, const T* offset, const T* shape, const T* lean,
+                  T* out) const {
+    T along = offset[0] + shape[0] + shape[1] * T(aspect.cos1) + shape[2] * T(aspect.cos2);
+    T across = offset[1] + shape[3] * T(aspect.sin1) + shape[4] * T(aspect.sin2);
+    along += lean[0] + lean[1] * T(sin_azimuth) + lean[2] * T(range_m);
+    across += lean[3] + lean[4] * T(sin_azimuth) + lean[5] * T(range_m);
+    const T as_it_stands[] = {T(radar_x_m), T(radar_y_m), radar[2]};
+    return Compare(as_it_stands, target, along, across, out);
   }
   template <class T>
   bool operator()(const T* radar, const T* target, T* out) const {

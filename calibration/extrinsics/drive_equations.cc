@@ -12,6 +12,7 @@ DriveEquations::DriveEquations(const DriveData& drive, MountingParameters& mount
   epochs.resize(data.ego->samples().size());
   targets.resize(data.windows.size());
   offsets.resize(data.chains);
+  leans.resize(data.vehicle->radars.size());
   nods.resize(data.log->pictures.size());
   AddPriors();
   AddDoppler();
@@ -115,6 +116,22 @@ double* DriveEquations::Shape(double time_s) {
     }
   }
   return shape->data();
+}
+
+double* DriveEquations::Lean(int radar, double time_s) {
+  auto& lean = leans[static_cast<std::size_t>(radar)];
+  if (!lean) {
+    lean.emplace();
+    blocks.push_back(lean->data());
+    const double sigmas[kLean] = {options.lean_along_m,  options.lean_along_m,  options.lean_range,
+                                  options.lean_across_m, options.lean_across_m, options.lean_rad};
+    for (int i = 0; i < kLean; ++i) {
+      considered.push_back({lean->data(), i, sigmas[i]});
+      Add(AutoDiff<PriorCost, kLean>({i, 0.0, kHeld * sigmas[i]}), nullptr,
+          Group(RadarName(radar) + ".lean"), time_s, lean->data());
+    }
+  }
+  return lean->data();
 }
 
 }  // namespace v2vouch

@@ -49,6 +49,8 @@ struct DriveEquations {
   double* Epoch(std::size_t index);
   /// What reflections of all vehicles have in common, with its prior when first asked for.
   double* Shape(double time_s);
+  /// What reflections that one radar sees have in common, held at 0.
+  double* Lean(int radar, double time_s);
 
   void AddPriors();
   void AddDoppler();
@@ -67,6 +69,15 @@ struct DriveEquations {
   std::vector<std::array<double, 4>> targets;                 ///< Place, velocity.
   std::vector<std::optional<std::array<double, 2>>> offsets;  ///< Per chain: along, across.
   std::optional<std::array<double, kShape>> shape;
+  std::vector<std::optional<std::array<double, kLean>>> leans;  ///< Per radar.
+  struct Considered {
+    const double* block;
+    int index;
+    double sigma;
+  };
+  /// Sigma of what is considered, as an equation, against what is known of it.
+  static constexpr double kHeld = 1e-4;
+  std::vector<Considered> considered;
   std::vector<std::optional<double>> nods;    ///< Per picture.
   std::vector<std::optional<double>> drifts;  ///< Heading minus gyro, per knot.
   std::vector<double*> blocks;                ///< In the order of the Jacobian's columns.

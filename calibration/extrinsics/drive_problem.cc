@@ -53,6 +53,18 @@ const std::vector<std::array<double, 4>>& DriveProblem::targets() const {
 const std::vector<std::string>& DriveProblem::groups() const { return equations_->groups; }
 const std::vector<Equation>& DriveProblem::equations() const { return equations_->equations; }
 double DriveProblem::weighed_inflation(int group) const { return equations_->InflationOf(group); }
+std::vector<DriveProblem::Considered> DriveProblem::considered() const {
+  std::vector<Considered> all;
+  int column = 0;
+  for (const double* block : equations_->blocks) {
+    for (const auto& one : equations_->considered) {
+      if (one.block != block) continue;
+      all.push_back({column + one.index, one.sigma, DriveEquations::kHeld * one.sigma});
+    }
+    column += equations_->problem->ParameterBlockSize(block);
+  }
+  return all;
+}
 int DriveProblem::prior_equations() const { return equations_->priors; }
 
 DriveProblem::Linear DriveProblem::Linearised(bool with_loss) const {

@@ -37,6 +37,12 @@ struct ProblemOptions {
   double wander_m = 0.4;
   double offset_m = 0.4;
   double shape_m = 1.5;  ///< What is the same for all vehicles under one aspect.
+  /// What stays the same for all that one radar sees, whatever the aspect: along and across the
+  /// ray, and in proportion to the range.
+  double lean_along_m = 0.6;
+  double lean_across_m = 0.2;
+  double lean_range = 0.03;
+  double lean_rad = FromDegrees(0.1);
   /// Groups whose noise is correlated: by what their variance in blocks exceeds white noise
   /// (MountingInformation::inflation). Their equations weigh so much less.
   std::map<std::string, double> inflation;
@@ -76,6 +82,14 @@ class DriveProblem {
   [[nodiscard]] const std::vector<std::string>& groups() const;
   [[nodiscard]] const std::vector<Equation>& equations() const;  ///< Priors first.
   [[nodiscard]] int prior_equations() const;
+
+  /// An unknown of the targets that is held at 0 although it is known with `sigma` only.
+  struct Considered {
+    int column = 0;  ///< Of Linearised().
+    double sigma = 0.0;
+    double held_sigma = 0.0;  ///< Its equation's.
+  };
+  [[nodiscard]] std::vector<Considered> considered() const;
   /// By how much a group's variance was taken for larger than stated.
   [[nodiscard]] double weighed_inflation(int group) const;
 

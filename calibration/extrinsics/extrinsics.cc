@@ -191,8 +191,8 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
                              gaussian.fits[g].robust_chi_square,
                              information.inflation(static_cast<Eigen::Index>(g))});
   }
-  const HeldPosterior held = HoldWeakDirections(information.S, parameters);
-  const HeldPosterior bound = HoldWeakDirections(gaussian.S, parameters);
+  const HeldPosterior held = HoldWeakDirections(information.S, information.doubts, parameters);
+  const HeldPosterior bound = HoldWeakDirections(gaussian.S, gaussian.doubts, parameters);
   result.weak = held.weak;
   const Eigen::VectorXd& factor = information.std_factor;
   result.covariance = factor.asDiagonal() * held.covariance * factor.asDiagonal();

@@ -100,6 +100,15 @@ MountingInformation Reduce(const DriveProblem& problem, const MountingParameters
   information.S = Hpp - Htp.transpose() * G;
   information.S = 0.5 * (information.S + information.S.transpose()).eval();
 
+  // The row of G is its own variance times what it and the parameters have in common.
+  const auto considered = problem.considered();
+  information.doubts.resize(np, static_cast<Eigen::Index>(considered.size()));
+  for (std::size_t i = 0; i < considered.size(); ++i) {
+    const auto& one = considered[i];
+    information.doubts.col(static_cast<Eigen::Index>(i)) =
+        G.row(one.column - np).transpose() * (one.sigma / (one.held_sigma * one.held_sigma));
+  }
+
   // Influence of every equation on the estimate: X' J' r, X = [I; -G] (S + priors)^-1.
   Eigen::VectorXd prior(np);
   for (int i = 0; i < np; ++i) {

@@ -18,6 +18,9 @@ namespace v2vouch {
 /// neither groups nor correlated noise.
 struct MountingInformation {
   Eigen::MatrixXd S;  ///< Data alone: no prior of a mounting parameter in it.
+  /// What one sigma of each unknown that is considered only adds to the right side of S p = b, a
+  /// column each.
+  Eigen::MatrixXd doubts;
 
   /// Group by group, whose noise an estimate's variance is made of: row group (DriveProblem's),
   /// column parameter, each column sums to 1. With priors, as the estimate has.

@@ -36,13 +36,21 @@ void DriveEquations::AddTargets() {
                                   .measured = look.range_m,
                                   .sigma = std::hypot(radar.range_sigma_m, across_m),
                                   .is_azimuth = false,
-                                  .aspect = aspect};
+                                  .aspect = aspect,
+                                  .range_m = look.range_m,
+                                  .sin_azimuth = std::sin(look.azimuth_rad),
+                                  .radar_x_m = parameters.Radar(look.radar)[0],
+                                  .radar_y_m = parameters.Radar(look.radar)[1]};
       const RadarTargetCost azimuth{
           .pose = look.pose,
           .measured = look.azimuth_rad,
           .sigma = std::hypot(radar.azimuth_sigma_rad, across_m / std::max(1.0, look.range_m)),
           .is_azimuth = true,
-          .aspect = aspect};
+          .aspect = aspect,
+          .range_m = look.range_m,
+          .sin_azimuth = std::sin(look.azimuth_rad),
+          .radar_x_m = parameters.Radar(look.radar)[0],
+          .radar_y_m = parameters.Radar(look.radar)[1]};
       constexpr int kR = MountingParameters::kPerRadar;
       if (options.offset_m <= 0.0) {
         Add(AutoDiff<RadarTargetCost, kR, 4>(range), &cauchy, range_group, time_s,
@@ -61,10 +69,11 @@ void DriveEquations::AddTargets() {
         }
       }
       double* const of_all = Shape(time_s);
-      Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape>(range), &cauchy, range_group, time_s,
-          parameters.Radar(look.radar), target.data(), offset->data(), of_all);
-      Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape>(azimuth), &cauchy, azimuth_group, time_s,
-          parameters.Radar(look.radar), target.data(), offset->data(), of_all);
+      double* const of_radar = Lean(look.radar, time_s);
+      Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape, kLean>(range), &cauchy, range_group, time_s,
+          parameters.Radar(look.radar), target.data(), offset->data(), of_all, of_radar);
+      Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape, kLean>(azimuth), &cauchy, azimuth_group,
+          time_s, parameters.Radar(look.radar), target.data(), offset->data(), of_all, of_radar);
     }
     for (const auto& look : window.camera_looks) {
       const CameraConfig& camera = data.vehicle->cameras[static_cast<std::size_t>(look.camera)];

@@ -40,13 +40,15 @@ bool Contains(const std::string& text, const char* part) {
 
 }  // namespace
 
-HeldPosterior HoldWeakDirections(const Eigen::MatrixXd& S, const MountingParameters& solution) {
+HeldPosterior HoldWeakDirections(const Eigen::MatrixXd& S, const Eigen::MatrixXd& doubts,
+                                 const MountingParameters& solution) {
   HeldPosterior held;
   const Eigen::VectorXd D = PriorStd(solution);
   const Eigen::Index n = D.size();
   // In units of the priors; what is considered only is taken out, and its pull on the rest kept.
   Eigen::MatrixXd W = D.asDiagonal() * S * D.asDiagonal();
   Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd push = D.asDiagonal() * doubts;
   Eigen::VectorXd step(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& d = solution.descriptions()[static_cast<std::size_t>(i)];
@@ -61,7 +63,9 @@ HeldPosterior HoldWeakDirections(const Eigen::MatrixXd& S, const MountingParamet
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& d = solution.descriptions()[static_cast<std::size_t>(i)];
     if (d.is_anchor) anchored(i, i) += 1.0;
-    if (d.is_considered) pull.row(i).setZero();
+    if (!d.is_considered) continue;
+    pull.row(i).setZero();
+    push.row(i).setZero();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(W);
   const Eigen::MatrixXd& Q = eigen.eigenvectors();
@@ -76,7 +80,9 @@ HeldPosterior HoldWeakDirections(const Eigen::MatrixXd& S, const MountingParamet
     const Eigen::MatrixXd C =
         Q * (1.0 + information).inverse().matrix().asDiagonal() * Q.transpose();
     const Eigen::MatrixXd K = C * pull;  // What one sigma of the considered ones moves.
-    return D.asDiagonal() * (C + K * K.transpose() - K - K.transpose()) * D.asDiagonal();
+    const Eigen::MatrixXd P = C * push;
+    return D.asDiagonal() * (C + K * K.transpose() - K - K.transpose() + P * P.transpose()).eval() *
+           D.asDiagonal();
   };
   held.covariance = posterior(kept);
   held.crlb = posterior(l).diagonal().cwiseSqrt();
@@ -85,7 +91,8 @@ HeldPosterior HoldWeakDirections(const Eigen::MatrixXd& S, const MountingParamet
   const Eigen::MatrixXd inverse = data.eigenvectors() *
                                   data.eigenvalues().cwiseMax(kTiny).cwiseInverse().asDiagonal() *
                                   data.eigenvectors().transpose();
-  const Eigen::VectorXd variance = inverse.diagonal() + (inverse * pull).rowwise().squaredNorm();
+  const Eigen::VectorXd variance = inverse.diagonal() + (inverse * pull).rowwise().squaredNorm() +
+                                   (inverse * push).rowwise().squaredNorm();
   held.data_std = D.cwiseProduct(variance.cwiseSqrt());
   for (Eigen::Index i = 0; i < n; ++i) {
     held.values.push_back(solution.descriptions()[static_cast<std::size_t>(i)].prior +

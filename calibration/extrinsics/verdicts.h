@@ -24,8 +24,10 @@ struct HeldPosterior {
   std::vector<WeakDirection> weak;
 };
 
+/// @param doubts what one sigma of each unknown that is considered only pulls (a column each).
 /// @param solution the solver's values.
-HeldPosterior HoldWeakDirections(const Eigen::MatrixXd& S, const MountingParameters& solution);
+HeldPosterior HoldWeakDirections(const Eigen::MatrixXd& S, const Eigen::MatrixXd& doubts,
+                                 const MountingParameters& solution);
 
 /// ESTIMATED: data_std under a third of the prior's; WEAK: under the prior's; else PRIOR. Then
 /// AT_BOUND beyond three prior standard deviations, REJECTED where the sensor's equations do not

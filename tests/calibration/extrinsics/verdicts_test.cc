@@ -32,7 +32,7 @@ TEST(HoldWeakDirections, WhatNothingMeasuresStaysAtThePriorTogether) {
   parameters.values()[static_cast<std::size_t>(radar_y)] += 0.10;  // Both moved by the solver.
   parameters.values()[static_cast<std::size_t>(antenna_y)] += 0.10;
 
-  const HeldPosterior held = HoldWeakDirections(S, parameters);
+  const HeldPosterior held = HoldWeakDirections(S, Eigen::MatrixXd::Zero(S.rows(), 0), parameters);
   EXPECT_NEAR(held.values[static_cast<std::size_t>(radar_y)], 0.0, 1e-4);
   EXPECT_NEAR(held.values[static_cast<std::size_t>(antenna_y)], 0.0, 1e-4);
   // Data alone say nothing of either ...
@@ -58,7 +58,7 @@ TEST(HoldWeakDirections, WhatIsMeasuredWellIsLeftAlone) {
   const int yaw = parameters.RadarAt(0) + 2;
   S(yaw, yaw) = 1.0 / (1e-4 * 1e-4);
   parameters.values()[static_cast<std::size_t>(yaw)] = 0.01;
-  const HeldPosterior held = HoldWeakDirections(S, parameters);
+  const HeldPosterior held = HoldWeakDirections(S, Eigen::MatrixXd::Zero(S.rows(), 0), parameters);
   EXPECT_NEAR(held.values[static_cast<std::size_t>(yaw)], 0.01, 1e-12);
   EXPECT_NEAR(held.data_std(yaw), 1e-4, 1e-7);
   EXPECT_NEAR(held.crlb(yaw), 1e-4, 1e-7);
