@@ -64,6 +64,21 @@ TEST(HoldWeakDirections, WhatIsMeasuredWellIsLeftAlone) {
   EXPECT_NEAR(held.crlb(yaw), 1e-4, 1e-7);
 }
 
+TEST(HoldWeakDirections, WhatIsConsideredOnlyIsInTheDoubtAndNotInTheValue) {
+  MountingParameters parameters(OneRadar(), {});
+  const auto n = parameters.size();
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
+  const int yaw = parameters.RadarAt(0) + 2;
+  S(yaw, yaw) = 1.0 / (1e-4 * 1e-4);
+  parameters.values()[static_cast<std::size_t>(yaw)] = 0.01;
+  Eigen::MatrixXd doubts = Eigen::MatrixXd::Zero(n, 1);
+  doubts(yaw, 0) = S(yaw, yaw) * 0.003;  // One sigma of it turns the radar by 0.003.
+  const HeldPosterior held = HoldWeakDirections(S, doubts, parameters);
+  EXPECT_NEAR(held.values[static_cast<std::size_t>(yaw)], 0.01, 1e-12);
+  EXPECT_NEAR(held.data_std(yaw), std::hypot(1e-4, 0.003), 1e-6);
+  EXPECT_NEAR(std::sqrt(held.covariance(yaw, yaw)), std::hypot(1e-4, 0.003), 1e-6);
+}
+
 TEST(VerdictOf, FollowsWhatTheDataAloneKnow) {
   using enum CalibrationVerdict;
   EXPECT_EQ(VerdictOf(0.01, 0.016, 0.0, 0.05, true), kEstimated);
