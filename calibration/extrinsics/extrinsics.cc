@@ -18,6 +18,8 @@ constexpr double kMoving_mps = 3.0;
 // A group whose mean squared whitened residual is beyond these does not fit its model. Below: the
 // stated noise is far too large, which misleads no one but wastes information.
 constexpr double kMostChiSquare = 2.0;
+// Vehicles that are no points: the cost's last digits are spent on where each reflects.
+constexpr double kLeastExtendedTolerance = 2e-6;
 
 struct Pass {
   DopplerSelection doppler;
@@ -167,7 +169,8 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
     tell(pass.from, pass.name);
     Select(pass, i == 0, parameters, data);
     problem_options.doppler_loss = pass.doppler_loss;
-    problem_options.tolerance = pass.tolerance;
+    problem_options.tolerance =
+        options.point_targets ? pass.tolerance : std::max(pass.tolerance, kLeastExtendedTolerance);
     if (!solve(pass.from, pass.to, pass.name)) return result;
   }
   // Correlated measurements weigh what they are worth, or the prior would be outvoted by
