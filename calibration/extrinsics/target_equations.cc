@@ -41,16 +41,10 @@ void DriveEquations::AddTargets() {
                                   .sin_azimuth = std::sin(look.azimuth_rad),
                                   .radar_x_m = parameters.Radar(look.radar)[0],
                                   .radar_y_m = parameters.Radar(look.radar)[1]};
-      const RadarTargetCost azimuth{
-          .pose = look.pose,
-          .measured = look.azimuth_rad,
-          .sigma = std::hypot(radar.azimuth_sigma_rad, across_m / std::max(1.0, look.range_m)),
-          .is_azimuth = true,
-          .aspect = aspect,
-          .range_m = look.range_m,
-          .sin_azimuth = std::sin(look.azimuth_rad),
-          .radar_x_m = parameters.Radar(look.radar)[0],
-          .radar_y_m = parameters.Radar(look.radar)[1]};
+      RadarTargetCost azimuth = range;
+      azimuth.measured = look.azimuth_rad;
+      azimuth.sigma = std::hypot(radar.azimuth_sigma_rad, across_m / std::max(1.0, look.range_m));
+      azimuth.is_azimuth = true;
       constexpr int kR = MountingParameters::kPerRadar;
       if (options.offset_m <= 0.0) {
         Add(AutoDiff<RadarTargetCost, kR, 4>(range), &cauchy, range_group, time_s,

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <memory>
 
+#include "calibration/gps_bias/wander_terms.h"
+
 namespace v2vouch {
 namespace {
 
@@ -34,30 +36,6 @@ struct Residual {
   }
 };
 
-struct Prior {
-  double sigma;
-  template <class T>
-  bool operator()(const T* x, T* out) const {
-    for (int i = 0; i < 2; ++i) out[i] = x[i] / T(sigma);
-    return true;
-  }
-};
-
-// Gauss-Markov from one knot to the next.
-struct Wander {
-  explicit Wander(const GpsBiasConfig& config)
-      : keep(std::exp(-config.knot_s / config.wander_decay_s)),
-        sigma(config.wander_sigma_m * std::sqrt(1.0 - keep * keep)) {}
-
-  double keep;
-  double sigma;
-  template <class T>
-  bool operator()(const T* from, const T* to, T* out) const {
-    for (int i = 0; i < 2; ++i) out[i] = (to[i] - T(keep) * from[i]) / T(sigma);
-    return true;
-  }
-};
-
 template <class Cost, int... kSizes>
 ceres::CostFunction* AutoDiff(const Cost& cost) {
   return new ceres::AutoDiffCostFunction<Cost, 2, kSizes...>(new Cost(cost));
@@ -70,7 +48,7 @@ class Window {
     ceres::Problem::Options options;
     options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     problem_ = std::make_unique<ceres::Problem>(options);
-    problem_->AddResidualBlock(AutoDiff<Prior, 2>({config.common_sigma_m}), nullptr,
+    problem_->AddResidualBlock(AutoDiff<PriorTerm<2>, 2>(EastNorth(config.common_sigma_m)), nullptr,
                                common_.data());
     senders_.resize(senders.size());
     for (std::size_t j = 0; j < senders.size(); ++j) Add(senders[j], at, senders_[j]);
@@ -132,10 +110,10 @@ class Window {
     const auto add_prior = [&](ceres::CostFunction* cost, auto*... x) {
       sender.priors.push_back(problem_->AddResidualBlock(cost, nullptr, x...));
     };
-    add_prior(AutoDiff<Prior, 2>({config_.sender_sigma_m}), sender.constant.data());
-    add_prior(AutoDiff<Prior, 2>({config_.wander_sigma_m}), sender.knots[0].data());
+    add_prior(AutoDiff<PriorTerm<2>, 2>(EastNorth(config_.sender_sigma_m)), sender.constant.data());
+    add_prior(AutoDiff<PriorTerm<2>, 2>(EastNorth(config_.wander_sigma_m)), sender.knots[0].data());
     for (std::size_t k = 1; k < knots; ++k) {
-      add_prior(AutoDiff<Wander, 2, 2>(wander_), sender.knots[k - 1].data(),
+      add_prior(AutoDiff<WanderTerm, 2, 2>(wander_), sender.knots[k - 1].data(),
                 sender.knots[k].data());
     }
     for (const BiasBlock& block : blocks.blocks) {
@@ -220,7 +198,7 @@ class Window {
   }
 
   GpsBiasConfig config_;
-  Wander wander_;
+  WanderTerm wander_;
   ceres::HuberLoss huber_;
   std::unique_ptr<ceres::Problem> problem_;
   Block common_{};

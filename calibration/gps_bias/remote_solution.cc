@@ -13,6 +13,7 @@
 #include <numeric>
 
 #include "calibration/gps_bias/remote_terms.h"
+#include "calibration/gps_bias/wander_terms.h"
 
 namespace v2vouch {
 namespace {
@@ -20,11 +21,7 @@ namespace {
 using remote::Block;
 using remote::BlockCost;
 using remote::Blocks;
-using remote::ConstantPrior;
 using remote::kConstant;
-using remote::KnotPrior;
-using remote::KnotStep;
-using remote::TurnPrior;
 
 constexpr int kIterations = 20;
 constexpr double kSlopePrior_mps = 1.0;
@@ -141,8 +138,7 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
   for (const Block& block : blocks) s.blocks.push_back({block.time_s, block.mean});
 
   const double knot_s = rules.noise.knot_s;
-  const double keep = std::exp(-knot_s / rules.noise.wander_decay_s);
-  const KnotStep step{keep, rules.noise.wander_sigma_m * std::sqrt(1.0 - keep * keep)};
+  const WanderTerm step(rules.noise);
   std::array<double, kConstant> x{};
   double turn_rad = 0.0;
   std::vector<std::array<double, 2>> knots(static_cast<std::size_t>(blocks.back().time_s / knot_s) +
@@ -152,22 +148,23 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(options);
   const double sigma_m = std::hypot(rules.noise.sender_sigma_m, rules.noise.common_sigma_m);
-  const ConstantPrior prior{{sigma_m, sigma_m, rules.latency_sigma_s, rules.offset_sigma_m,
-                             kSlopePrior_mps, kSlopePrior_mps}};
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ConstantPrior, kConstant, kConstant>(
-                               new ConstantPrior(prior)),
-                           nullptr, x.data());
+  const PriorTerm<kConstant> prior{{sigma_m, sigma_m, rules.latency_sigma_s, rules.offset_sigma_m,
+                                    kSlopePrior_mps, kSlopePrior_mps}};
   problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<KnotPrior, 2, 2>(new KnotPrior{rules.noise.wander_sigma_m}),
-      nullptr, knots[0].data());
+      new ceres::AutoDiffCostFunction<PriorTerm<kConstant>, kConstant, kConstant>(
+          new PriorTerm<kConstant>(prior)),
+      nullptr, x.data());
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorTerm<2>, 2, 2>(
+                               new PriorTerm<2>(EastNorth(rules.noise.wander_sigma_m))),
+                           nullptr, knots[0].data());
   problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<TurnPrior, 1, 1>(new TurnPrior{kTurnPrior_rad}), nullptr,
-      &turn_rad);
+      new ceres::AutoDiffCostFunction<PriorTerm<1>, 1, 1>(new PriorTerm<1>{{kTurnPrior_rad}}),
+      nullptr, &turn_rad);
   problem.SetParameterBlockConstant(&turn_rad);
   std::vector<ceres::ResidualBlockId> steps;
   for (std::size_t k = 1; k < knots.size(); ++k) {
     steps.push_back(problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<KnotStep, 2, 2, 2>(new KnotStep(step)), nullptr,
+        new ceres::AutoDiffCostFunction<WanderTerm, 2, 2, 2>(new WanderTerm(step)), nullptr,
         knots[k - 1].data(), knots[k].data()));
   }
   std::vector<ceres::ResidualBlockId> data;

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <cstddef>
 #include <vector>
 
 #include "calibration/gps_bias/remote_solution.h"
@@ -42,42 +40,6 @@ struct BlockCost {
                x[2] * T(block.velocity[i]) - turn[0] * T(left[i]);
     }
     for (int i = 0; i < 2; ++i) out[i] = T(whiten(i, 0)) * off[0] + T(whiten(i, 1)) * off[1];
-    return true;
-  }
-};
-
-struct ConstantPrior {
-  std::array<double, kConstant> sigma;
-  template <class T>
-  bool operator()(const T* x, T* out) const {
-    for (std::size_t i = 0; i < kConstant; ++i) out[i] = x[i] / T(sigma[i]);
-    return true;
-  }
-};
-
-struct KnotPrior {
-  double sigma;
-  template <class T>
-  bool operator()(const T* knot, T* out) const {
-    for (int i = 0; i < 2; ++i) out[i] = knot[i] / T(sigma);
-    return true;
-  }
-};
-
-struct TurnPrior {
-  double sigma;
-  template <class T>
-  bool operator()(const T* turn, T* out) const {
-    out[0] = turn[0] / T(sigma);
-    return true;
-  }
-};
-
-struct KnotStep {
-  double keep, sigma;
-  template <class T>
-  bool operator()(const T* from, const T* to, T* out) const {
-    for (int i = 0; i < 2; ++i) out[i] = (to[i] - T(keep) * from[i]) / T(sigma);
     return true;
   }
 };

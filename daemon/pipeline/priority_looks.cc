@@ -13,7 +13,6 @@ namespace {
 constexpr double kMaxClaimAge_s = 0.4;  // An older claim says too little of where to look now.
 constexpr double kHit_s = 0.35;         // A track hit so lately is there.
 constexpr double kStanding_mps = 2.0;   // Standing returns may be a vehicle slower than this.
-constexpr double kStandingReach_m = 2.0;
 constexpr double kPlaceSigma_m = 0.3;
 constexpr double kTakenSlack_m = -0.5;  // Another vehicle's place is taken well inside only.
 constexpr double kTaken = 0.9;  // How surely a place is not free that another vehicle stands on.
@@ -93,6 +92,15 @@ void PriorityPerception::LookAtClaims(const LocalFrame& frame, const VisibilityM
   }
 }
 
+Occluder PriorityPerception::ClaimedFootprint(const Link& link, const Eigen::Vector2d& centre_O,
+                                              double yaw_rad) {
+  return {.centre_O = centre_O,
+          .yaw_rad = yaw_rad,
+          .length_m = link.length_m.value_or(4.5),
+          .width_m = link.width_m.value_or(1.8),
+          .position_sigma_m = kPlaceSigma_m};
+}
+
 std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> PriorityPerception::LookAround(
     const Link& link, const LocalFrame& frame, const VisibilityMap& map) const {
   const ClaimedPlaceConfig& config = settings_->priority.trust.place;
@@ -109,11 +117,8 @@ std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> PriorityPerception::LookAr
   for (std::size_t i = 0; i < footprints.size(); ++i) {
     const double x = along_m * ClaimedPlace::Places()[i].along;
     const double y = across_m * ClaimedPlace::Places()[i].across;
-    footprints[i] = {.centre_O = p_O + Eigen::Vector2d(c * x - s * y, s * x + c * y),
-                     .yaw_rad = claim.yaw_rad,
-                     .length_m = link.length_m.value_or(4.5),
-                     .width_m = link.width_m.value_or(1.8),
-                     .position_sigma_m = kPlaceSigma_m};
+    footprints[i] =
+        ClaimedFootprint(link, p_O + Eigen::Vector2d(c * x - s * y, s * x + c * y), claim.yaw_rad);
   }
   std::array<bool, ClaimedPlace::kPlaces> is_taken{};
   std::array<bool, ClaimedPlace::kPlaces> is_occupied{};

@@ -13,8 +13,6 @@ namespace {
 
 constexpr double kGap_m = 2.0;      // Between bumpers of two that stand in a queue ...
 constexpr double kHeadway_s = 0.8;  // ... and so much more where they drive.
-constexpr double kReturnReach_m = 2.0;
-constexpr double kNeighbourSigma_m = 0.3;
 
 }  // namespace
 
@@ -26,19 +24,15 @@ PriorityPerception::UnseenNeighbours PriorityPerception::LookBeside(
   if (sensed == nullptr) return unseen;
   unseen.track_id = pair->track_id;
   const StateVector& track = sensed->track.state_O.mean;
-  const double length_m = link.length_m.value_or(4.5);
-  const double apart_m = 0.5 * (sensed->track.extent.length_m + length_m) + kGap_m +
-                         kHeadway_s * std::abs(track[kSpeed]);
   // Of a track that has never moved the direction is a guess; the sender knows its own.
   const double yaw_rad = link.last.has_course ? link.last.yaw_rad : track[kYaw];
+  Occluder footprint = ClaimedFootprint(link, track.head<2>(), yaw_rad);
+  const double apart_m = 0.5 * (sensed->track.extent.length_m + footprint.length_m) + kGap_m +
+                         kHeadway_s * std::abs(track[kSpeed]);
   const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
   for (std::size_t i = 0; i < unseen.offsets_O.size(); ++i) {
     const Eigen::Vector2d offset_O = (i == 0 ? apart_m : -apart_m) * ahead;
-    const Occluder footprint{.centre_O = track.head<2>() + offset_O,
-                             .yaw_rad = yaw_rad,
-                             .length_m = length_m,
-                             .width_m = link.width_m.value_or(1.8),
-                             .position_sigma_m = kNeighbourSigma_m};
+    footprint.centre_O = track.head<2>() + offset_O;
     // A LOCAL track there is asked for itself.
     const bool is_tracked = std::ranges::any_of(sensed_, [&](const Sensed& other) {
       return other.track.id != pair->track_id && other.is_hit &&
@@ -48,7 +42,7 @@ PriorityPerception::UnseenNeighbours PriorityPerception::LookBeside(
     const bool is_clear =
         ClearDetection(footprint, frame, map, settings_->vehicle, ClearTo::kAnySensor, 0.0)
             .has_value();
-    if (is_clear && !map.HasStandingReturn(footprint.centre_O, kReturnReach_m)) continue;
+    if (is_clear && !map.HasStandingReturn(footprint.centre_O, kStandingReach_m)) continue;
     unseen.offsets_O[i] = offset_O;
   }
   return unseen;

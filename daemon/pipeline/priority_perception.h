@@ -117,7 +117,8 @@ class PriorityPerception {
     std::optional<Timestamp> last_part;  // Last look that had but a part of it.
     bool is_partial = false;             // That was so lately that the part may mislead.
   };
-  static constexpr double kOnePlace_m = 2.0;  // Centres of two vehicles are never so close.
+  static constexpr double kOnePlace_m = 2.0;       // Centres of two vehicles are never so close.
+  static constexpr double kStandingReach_m = 2.0;  // Standing returns so near may be a vehicle.
   static bool IsRecent(const Link& link, Timestamp now);
   struct Settings {
     PriorityConfig priority;
@@ -162,6 +163,9 @@ class PriorityPerception {
   [[nodiscard]] bool IsVouchedFor(const Link& link) const;
   [[nodiscard]] bool IsPlaceShared(const Link& link, Timestamp now) const;
   [[nodiscard]] bool IsOnAnotherLevel(const Link& link) const;
+  // The vehicle that the sender says it is, at a place.
+  static Occluder ClaimedFootprint(const Link& link, const Eigen::Vector2d& centre_O,
+                                   double yaw_rad);
   [[nodiscard]] UnseenNeighbours LookBeside(const Link& link, const LocalFrame& frame,
                                             const VisibilityMap& map) const;
   [[nodiscard]] static double MarginOverUnseen(const Link& link, const PairTable::Pair& pair);

@@ -51,13 +51,22 @@ TEST(HoldWeakDirections, WhatNothingMeasuresStaysAtThePriorTogether) {
   EXPECT_NE(together, held.weak.end());
 }
 
+struct Measured {
+  MountingParameters parameters{OneRadar(), {}};
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(parameters.size(), parameters.size());
+  int yaw = parameters.RadarAt(0) + 2;
+};
+
+// The radar's yaw is 0.01, known to 1e-4; nothing else is.
+Measured YawMeasuredWell() {
+  Measured m;
+  m.S(m.yaw, m.yaw) = 1.0 / (1e-4 * 1e-4);
+  m.parameters.values()[static_cast<std::size_t>(m.yaw)] = 0.01;
+  return m;
+}
+
 TEST(HoldWeakDirections, WhatIsMeasuredWellIsLeftAlone) {
-  MountingParameters parameters(OneRadar(), {});
-  const auto n = parameters.size();
-  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
-  const int yaw = parameters.RadarAt(0) + 2;
-  S(yaw, yaw) = 1.0 / (1e-4 * 1e-4);
-  parameters.values()[static_cast<std::size_t>(yaw)] = 0.01;
+  const auto [parameters, S, yaw] = YawMeasuredWell();
   const HeldPosterior held = HoldWeakDirections(S, Eigen::MatrixXd::Zero(S.rows(), 0), parameters);
   EXPECT_NEAR(held.values[static_cast<std::size_t>(yaw)], 0.01, 1e-12);
   EXPECT_NEAR(held.data_std(yaw), 1e-4, 1e-7);
@@ -65,13 +74,8 @@ TEST(HoldWeakDirections, WhatIsMeasuredWellIsLeftAlone) {
 }
 
 TEST(HoldWeakDirections, WhatIsConsideredOnlyIsInTheDoubtAndNotInTheValue) {
-  MountingParameters parameters(OneRadar(), {});
-  const auto n = parameters.size();
-  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
-  const int yaw = parameters.RadarAt(0) + 2;
-  S(yaw, yaw) = 1.0 / (1e-4 * 1e-4);
-  parameters.values()[static_cast<std::size_t>(yaw)] = 0.01;
-  Eigen::MatrixXd doubts = Eigen::MatrixXd::Zero(n, 1);
+  const auto [parameters, S, yaw] = YawMeasuredWell();
+  Eigen::MatrixXd doubts = Eigen::MatrixXd::Zero(S.rows(), 1);
   doubts(yaw, 0) = S(yaw, yaw) * 0.003;  // One sigma of it turns the radar by 0.003.
   const HeldPosterior held = HoldWeakDirections(S, doubts, parameters);
   EXPECT_NEAR(held.values[static_cast<std::size_t>(yaw)], 0.01, 1e-12);
