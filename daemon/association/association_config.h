@@ -28,8 +28,9 @@ struct AssociationConfig {
   double background_per_m2 = 0.01;  ///< Density of vehicles that the claim could be instead.
   double speed_background_mps = 20.0;  ///< Spread of their speeds; headings are uniform.
   double forgetting_s = 10.0;          ///< Evidence fades with this time constant.
-  double max_level = 3.0;   ///< Of the learnt bias (2 dof, 0.95): beyond, nothing is validated.
-  double min_margin = 3.0;  ///< Log-likelihood by which the second best must be beaten.
+  double max_level = 3.0;      ///< Of the learnt bias (2 dof, 0.95): beyond, nothing is validated.
+  double max_speed_mps = 0.5;  ///< Mean difference in speed beyond which nothing is validated.
+  double min_margin = 3.0;     ///< Log-likelihood by which the second best must be beaten.
   double incumbent_bonus = 9.2;          ///< Head start of a validated pair in the assignment.
   double max_height_difference_m = 4.0;  ///< Farther apart in known elevation: never a pair.
   double pair_timeout_s = 2.0;           ///< A pair not observed for this long is forgotten.
@@ -44,6 +45,7 @@ struct AssociationConfig {
     a.Field("speed_background_mps", speed_background_mps, {.above = 0.1, .at_most = 100.0});
     a.Field("forgetting_s", forgetting_s, {.above = 0.5, .at_most = 600.0});
     a.Field("max_level", max_level, {.above = 0.1, .at_most = 50.0});
+    a.Field("max_speed_mps", max_speed_mps, {.at_least = 0.0, .at_most = 20.0});
     a.Field("min_margin", min_margin, {.at_least = 0.0, .at_most = 100.0});
     a.Field("incumbent_bonus", incumbent_bonus, {.at_least = 0.0, .at_most = 100.0});
     a.Field("max_height_difference_m", max_height_difference_m, {.above = 0.0, .at_most = 100.0});

@@ -14,7 +14,7 @@ namespace {
 constexpr double kMaxDistance = 25.0;
 constexpr double kMaxGain = 4.0;
 constexpr double kMaxLoss = -8.0;
-constexpr int kNisWindow = 20;
+constexpr int kMeanWindow = 20;
 
 double LogNormal(double residual, double sigma) {
   const double distance = std::min(residual * residual / (sigma * sigma), kMaxDistance);
@@ -67,8 +67,10 @@ void PairEvidence::Add(const PairObservation& observation, const AssociationConf
     ++outlier_run_;  // Not learnt from: a jump is no bias.
   }
 
-  const double weight = 1.0 / std::min(observations_, kNisWindow);
+  const double weight = 1.0 / std::min(observations_, kMeanWindow);
   mean_nis_ += weight * (std::min(nis, 4.0 * kMaxDistance) - mean_nis_);
+  mean_speed_ += weight * (observation.speed_residual_mps - mean_speed_);
+  mean_speed_sigma_ += weight * (observation.speed_sigma_mps - mean_speed_sigma_);
 
   double gain = -0.5 * std::min(nis, kMaxDistance) -
                 0.5 * std::log(4.0 * kPi * kPi * S.determinant()) -
@@ -85,8 +87,12 @@ void PairEvidence::Add(const PairObservation& observation, const AssociationConf
 }
 
 bool PairEvidence::is_nis_consistent() const {
-  const double dof = 2.0 * std::min(observations_, kNisWindow);
+  const double dof = 2.0 * std::min(observations_, kMeanWindow);
   return mean_nis_ <= UpperChiSquare(dof) / dof * 2.0;
+}
+
+bool PairEvidence::is_speed_consistent(const AssociationConfig& config) const {
+  return std::abs(mean_speed_) <= config.max_speed_mps + mean_speed_sigma_;
 }
 
 }  // namespace v2vouch

@@ -273,6 +273,7 @@ void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
            .co_observations = evidence.observations(),
            .span_s = evidence.span_s(),
            .is_nis_consistent = evidence.is_nis_consistent(),
+           .is_speed_consistent = evidence.is_speed_consistent(config.safe),
            .is_level_plausible = evidence.level() <= config.safe.max_level,
            .is_size_plausible =
                IsSizePlausible(link.length_m, link.width_m, sensed->track.extent, config.trust),

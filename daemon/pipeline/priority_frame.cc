@@ -17,7 +17,8 @@ constexpr double kApart_m = 0.7;
 // A bridge is explained by a track, but not from the next lane.
 constexpr double kMostSlack_m = 1.0;
 constexpr double kMostBias = 0.95;  // Of what a bias may be: the filter stops there.
-// A vehicle of which a sensor has had but a part so lately may be misjudged by that part.
+// A vehicle of which a sensor has had but a part may be misjudged by that part until it has been
+// seen whole for so long.
 constexpr double kPart_s = 0.5;
 constexpr double kPartPosition_m = 0.5;
 constexpr double kPartYaw_rad = FromDegrees(8.0);
@@ -71,7 +72,7 @@ void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& 
   sensed_stamp_ = frame.stamp;
   parts_.clear();
   for (const Sensed& sensed : sensed_) {
-    if (sensed.last_part) parts_.emplace_back(sensed.track.id, *sensed.last_part);
+    if (sensed.part) parts_.push_back(*sensed.part);
   }
   sensed_.clear();
   for (const LocalTrack& track : frame.tracks) {
@@ -85,16 +86,20 @@ void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& 
     const bool is_sure = has_pair && AreSensorsSure(track, frame, map, settings_->vehicle,
                                                     settings_->priority.sensor_support);
     Sensed& sensed = sensed_.emplace_back(Sensed{track, is_sure, is_hit, {}, false});
-    for (const auto& [id, last_part] : parts_) {
-      if (id == track.id) sensed.last_part = last_part;
+    const auto before = std::ranges::find(parts_, track.id, &PartialLook::track_id);
+    if (before != parts_.end()) sensed.part = *before;
+    const bool is_of_a_part = std::ranges::any_of(frame.updates, [&](const SensorUpdate& update) {
+      return update.track_id == track.id &&
+             IsOfAPart(update.measurement, settings_->priority.bridge);
+    });
+    if (is_of_a_part) {
+      sensed.part = PartialLook{track.id, std::nullopt};
+    } else if (is_hit && sensed.part && !sensed.part->whole) {
+      sensed.part->whole = frame.stamp;
     }
-    for (const SensorUpdate& update : frame.updates) {
-      if (update.track_id != track.id) continue;
-      if (IsOfAPart(update.measurement, settings_->priority.bridge)) {
-        sensed.last_part = frame.stamp;
-      }
-    }
-    sensed.is_partial = sensed.last_part && ToSeconds(frame.stamp - *sensed.last_part) <= kPart_s;
+    // A track that coasts goes on as the part had it, however long.
+    sensed.is_partial = sensed.part && (!sensed.part->whole ||
+                                        ToSeconds(track.LastHit() - *sensed.part->whole) < kPart_s);
     if (sensed.is_partial) AddDoubt(sensed.track.state_O.covariance);
   }
 }

@@ -112,6 +112,15 @@ void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& c
   last_ = observation.stamp;
 }
 
+void ResidualHistory::Restart() {
+  has_any_ = false;
+  has_yaw_ = false;
+  time_s_ = 0.0;
+  block_count_ = 0;
+  block_sum_.setZero();
+  block_size_ = 0;
+}
+
 std::optional<Eigen::Vector2d> ResidualHistory::reference_O() const {
   if (block_count_ < 2) return std::nullopt;
   return Reference().head<2>();

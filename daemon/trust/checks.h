@@ -46,6 +46,9 @@ class ResidualHistory {
  public:
   void Add(const CoObservation& observation, const TrustConfig& config);
 
+  /// Means and reference start again; whether the pair is torn is watched on.
+  void Restart();
+
   [[nodiscard]] bool is_settled() const { return time_s_ >= 1.0; }  ///< One mean time has passed.
   [[nodiscard]] const Eigen::Vector2d& mean_O() const { return mean_; }
   /// How fast the residual moves: difference of a fast and a slow mean over that of their times.

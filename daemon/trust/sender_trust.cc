@@ -47,6 +47,10 @@ void SenderTrust::OnMessage(Timestamp stamp, bool is_consistent, const TrustConf
 bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_accuse,
                                   const TrustConfig& config) {
   const double dt_s = ToSeconds(observation.stamp - history_.last());
+  const Eigen::Vector2d track_O =
+      observation.track_speed_mps *
+      Eigen::Vector2d(std::cos(observation.track_yaw_rad), std::sin(observation.track_yaw_rad));
+  if (track_motion_.Observe(observation.stamp, track_O)) history_.Restart();
   history_.Add(observation, config);
   if (history_.is_torn() && !observation.is_own_motion_whole && is_relied_on()) {
     Suspect(observation.stamp, {"residual_jump", Verdict::kWithdraw, "jump_m",
@@ -54,8 +58,7 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
     return true;
   }
   if (history_.is_torn() && observation.is_own_motion_whole) {
-    Release(observation.stamp);
-    history_ = {};
+    StartAgain(observation.stamp);
     return false;
   }
   if (observation.is_partial) return true;
@@ -68,6 +71,12 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
   if (!gravest) {
     if (observation.is_plausible) clean_s_ += std::clamp(dt_s, 0.0, kMostCredit_s);
     return true;
+  }
+  // The sensors broke off, not the sender.
+  if (observation.is_own_motion_whole && track_motion_.HasBroken(observation.stamp)) {
+    if (has_penalty()) return true;
+    StartAgain(observation.stamp);
+    return false;
   }
   clean_s_ = 0.0;
   // What does not fit a stranger's track may be the track: another's, or none.
@@ -101,7 +110,8 @@ bool SenderTrust::TryValidate(const ValidationEvidence& evidence, const TrustCon
   }
   if (evidence.span_s < (is_known ? config.again_observed_s : config.co_observed_s)) return false;
   if (!evidence.is_level_plausible || !evidence.is_size_plausible) return false;
-  if (!evidence.is_nis_consistent || evidence.margin < evidence.min_margin) return false;
+  if (!evidence.is_nis_consistent || !evidence.is_speed_consistent) return false;
+  if (evidence.margin < evidence.min_margin) return false;
   if (!evidence.is_assigned || !evidence.are_sensors_sure) return false;
   state_ = TrustState::kValidated;
   return true;
@@ -119,6 +129,11 @@ void SenderTrust::Release(Timestamp stamp) {
   if (!is_relied_on()) return;
   released_ = stamp;
   state_ = TrustState::kCandidate;
+  history_ = {};
+}
+
+void SenderTrust::StartAgain(Timestamp stamp) {
+  Release(stamp);
   history_ = {};
 }
 

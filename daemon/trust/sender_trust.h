@@ -6,6 +6,7 @@
 #include "daemon/base/time.h"
 #include "daemon/data/outputs.h"
 #include "daemon/trust/checks.h"
+#include "daemon/trust/track_motion.h"
 #include "daemon/trust/trust_config.h"
 
 namespace v2vouch {
@@ -25,7 +26,8 @@ struct ValidationEvidence {
   int co_observations = 0;
   double span_s = 0.0;
   bool is_nis_consistent = false;
-  bool is_level_plausible = true;  ///< Its constant offset may be its bias.
+  bool is_speed_consistent = true;  ///< The sensors see it as fast as it says.
+  bool is_level_plausible = true;   ///< Its constant offset may be its bias.
   bool is_size_plausible = true;
   double margin = 0.0;  ///< Log-likelihood over the second best.
   double min_margin = 4.0;
@@ -64,8 +66,8 @@ class SenderTrust {
   /// A claim beside its LOCAL track. Acts on the gravest finding; TakeVerdict() tells.
   /// A sender whose own messages broke off when the two were torn apart is withdrawn at once.
   /// @return false where they were torn apart while the sender's messages continue each other: the
-  /// LOCAL track has jumped to something else. Then nobody is to blame and the sender starts from
-  /// zero; Release() has been called.
+  /// LOCAL track has jumped to something else, or has lately changed its velocity as no vehicle
+  /// can. Then nobody is to blame and the sender starts from zero; Release() has been called.
   bool OnCoObservation(const CoObservation& observation, bool may_accuse,
                        const TrustConfig& config);
 
@@ -88,6 +90,7 @@ class SenderTrust {
   /// Residuals have lost their common ground (the ego moved its own place): start them again.
   void ForgetResiduals() {
     history_ = {};
+    track_motion_ = {};
     accusable_since_.reset();
   }
 
@@ -99,6 +102,7 @@ class SenderTrust {
   std::optional<Judgement> TakeVerdict();
 
  private:
+  void StartAgain(Timestamp stamp);
   void Suspect(Timestamp stamp, const Finding& finding);
   void Revoke(Timestamp stamp, const Finding& finding);
 
@@ -112,6 +116,7 @@ class SenderTrust {
   Timestamp last_finding_{};
   std::optional<Timestamp> accusable_since_;
   ResidualHistory history_;
+  TrackMotion track_motion_;
   std::optional<Judgement> pending_;
 };
 

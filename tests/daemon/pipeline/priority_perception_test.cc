@@ -23,6 +23,7 @@ struct Car {
   double speed_mps = 0.0;
   bool is_seen = true;
   bool is_coasting = false;  // LOCAL still has a track of it that nothing hits.
+  bool is_part = false;      // No more than a part of it shows.
   // What a tracker would know of it.
   Timestamp start{};
   int radar_hits = 0;
@@ -123,6 +124,7 @@ class Scene {
   // What radar 0 would report of a car: h at the truth, plus noise.
   RadarMeasurement Radar(const Car& car, const Extent& extent) {
     RadarMeasurement measurement;
+    measurement.visible_share = car.is_part ? 0.3 : 1.0;
     measurement.covariance = Eigen::Vector3d(0.04, 1e-4, 0.01).asDiagonal();
     StateVector x;
     x << car.p.x(), car.p.y(), car.yaw_rad, car.speed_mps, 0.0, 0.0;
@@ -561,6 +563,43 @@ TEST(PriorityPerception, NothingIsBridgedOnABiasThatIsNone) {
     scene.Run(0.5, [&] { scene.Honest(1, {0.0, left_m}); });
     EXPECT_EQ(scene.Priority().size(), apart_m < 5.0 ? 1u : 0u);
     EXPECT_TRUE(scene.outputs.reports.empty());
+  }
+}
+
+// A part of the vehicle has turned its LOCAL track; hits that come now and then leave it so. Until
+// it has been seen whole for a while nobody is blamed for where it goes.
+TEST(PriorityPerception, ATrackThatAPartHasTurnedBlamesNobodyWhileItCoasts) {
+  Scene scene = Validated(21, 4.0);
+  Car& track = scene.cars[0];
+  Eigen::Vector2d p = track.p;
+  const auto honest = [&] {
+    p.x() -= 5.0 * kFrame_s;
+    if (scene.frames % 2 == 0) scene.Say(1, p + Eigen::Vector2d(1.0, -0.8), kPi, 5.0);
+  };
+  track.yaw_rad += 0.9;  // It moves 3.9 m/s across.
+  track.is_part = true;
+  scene.Run(0.35, honest);
+  track.is_part = false;
+  track.is_coasting = true;
+  scene.Run(1.0, [&] {
+    honest();
+    track.is_seen = scene.frames % 6 == 0;
+  });
+  EXPECT_GT((track.p - p).norm(), 5.0);
+  EXPECT_TRUE(scene.outputs.reports.empty());
+}
+
+// A hidden sender, and a car without radio that passes it in the next lane.
+TEST(PriorityPerception, WhoPassesAHiddenSenderIsNotTheSender) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Scene scene(seed);
+    scene.cars = {{.local_id = 7, .p = {35.0, 2.0}, .speed_mps = 12.0, .is_part = true}};
+    Eigen::Vector2d hidden(37.0, -0.8);
+    scene.Run(3.0, [&] {
+      hidden.x() += 10.0 * kFrame_s;
+      if (scene.frames % 2 == 0) scene.Say(1, hidden, 0.0, 10.0);
+      EXPECT_TRUE(scene.Priority().empty()) << "seed " << seed;
+    });
   }
 }
 

@@ -87,6 +87,7 @@ TEST(SenderTrust, EveryPieceOfEvidenceIsNeeded) {
   const Spoil spoils[] = {[](ValidationEvidence& e) { e.co_observations = 9; },
                           [](ValidationEvidence& e) { e.span_s = 1.4; },
                           [](ValidationEvidence& e) { e.is_nis_consistent = false; },
+                          [](ValidationEvidence& e) { e.is_speed_consistent = false; },
                           [](ValidationEvidence& e) { e.is_level_plausible = false; },
                           [](ValidationEvidence& e) { e.margin = 3.9; },
                           [](ValidationEvidence& e) { e.is_assigned = false; },
@@ -233,6 +234,49 @@ TEST(SenderTrust, AFalseSensedVelocityBlamesNobody) {
         return observation;
       },
       Verdict::kWithdraw)));
+}
+
+// A reflection runs along a car: LOCAL's speed goes from 33 to 38 m/s within 0.4 s, and the track
+// leaves the sender at 5 m/s.
+TEST(SenderTrust, ATrackThatMovesAsNoVehicleCanBlamesNobody) {
+  const auto run = [](bool is_the_tracks_doing) {
+    SenderTrust trust = Validated();
+    for (int i = 0; i < 60 && trust.is_relied_on(); ++i) {
+      const double t = 0.1 * i;
+      const double apart_mps = 5.0 * std::clamp((t - 3.0) / 0.4, 0.0, 1.0);
+      CoObservation observation = Residual(-5.0 * std::max(0.0, t - 3.2), 0.0);
+      observation.stamp = At(t);
+      observation.track_speed_mps = is_the_tracks_doing ? 33.0 + apart_mps : 33.0;
+      observation.speed_residual_mps = -apart_mps;
+      observation.velocity_residual_O = Eigen::Vector2d(-apart_mps, 0.0);
+      trust.OnCoObservation(observation, true, kConfig);
+    }
+    return trust;
+  };
+  SenderTrust honest = run(true);
+  EXPECT_EQ(honest.state(), TrustState::kCandidate);
+  EXPECT_FALSE(honest.TakeVerdict().has_value());
+  SenderTrust liar = run(false);
+  EXPECT_EQ(liar.state(), TrustState::kSuspect);
+}
+
+// While the sender was a stranger, the track strayed and came back in one step.
+TEST(SenderTrust, WhatWasOffBeforeTheTrackCameBackIsNoDrift) {
+  SenderTrust trust = Candidate();
+  for (int i = 0; i < 80; ++i) {
+    const bool is_astray = i < 25;
+    CoObservation observation = Residual(0.0, is_astray ? 4.3 : 0.2);
+    observation.sensed_sigma_m = is_astray ? 1.0 : 0.1;
+
+    observation.stamp = At(1.0 + 0.1 * i);
+    observation.track_speed_mps = is_astray ? 30.0 : 35.0;
+    trust.OnMessage(observation.stamp, true, kConfig);
+    if (i == 30) {
+      ASSERT_TRUE(trust.TryValidate(Good(), kConfig));
+    }
+    trust.OnCoObservation(observation, true, kConfig);
+  }
+  EXPECT_EQ(trust.state(), TrustState::kValidated);
 }
 
 // A LOCAL track of which but a part is seen drives off with another car, at a speed that it tells.
