@@ -88,7 +88,8 @@ std::string AttackTable(const std::vector<const Group*>& groups) {
 std::string HonestTable(const Summary& summary) {
   std::string rows =
       Header({"condition", "runs", "vehicle-hours", "accusations per hour", "withdrawn [% of time]",
-              "validated [%]", "held [%]", "occlusions", "survived [%]", "same id [%]", "ghosts"});
+              "validated [%]", "held [%]", "occlusions", "survived [%]",
+              "of those within the budget [%]", "same id [%]", "ghosts"});
   const auto add = [&](const std::string& name, const Group& group) {
     const HonestTreatment& h = group.attack.honest;
     const double hours = h.vehicle_s / 3600.0;
@@ -98,6 +99,7 @@ std::string HonestTable(const Summary& summary) {
             Percent(h.withdrawn_s, h.vehicle_s) + Percent(h.validated, h.in_view) +
             Percent(h.held_s, h.holdable_s) + Cell(std::to_string(h.bridges)) +
             Percent(h.bridges_survived, h.bridges) +
+            Percent(h.survived_in_budget, h.bridges_in_budget) +
             Percent(h.bridges_same_id, h.bridges_survived) +
             Cell(std::to_string(group.attack.ghosts)) + "</tr>\n";
   };

@@ -34,6 +34,8 @@ Json HonestJson(const HonestTreatment& h) {
           {"held_share", Ratio(h.held_s, h.holdable_s)},
           {"occlusions", h.bridges},
           {"bridging_survival", Ratio(h.bridges_survived, h.bridges)},
+          {"occlusions_in_budget", h.bridges_in_budget},
+          {"survival_in_budget", Ratio(h.survived_in_budget, h.bridges_in_budget)},
           {"ids_kept", Ratio(h.bridges_same_id, h.bridges_survived)}};
 }
 
@@ -153,6 +155,7 @@ std::string HonestLine(const Group& group, bool is_variant) {
          Cell(Share(100.0 * h.validated, h.in_view), 1) +
          Cell(Share(100.0 * h.held_s, h.holdable_s), 1) + Cell(Number(h.bridges), 0) +
          Cell(Share(100.0 * h.bridges_survived, h.bridges), 1) +
+         Cell(Share(100.0 * h.survived_in_budget, h.bridges_in_budget), 1) +
          Cell(Share(100.0 * h.bridges_same_id, h.bridges_survived), 1) + "\n";
 }
 
@@ -219,7 +222,8 @@ std::string SummaryTable(const Summary& summary, bool field) {
     out += Lines(summary.attacks, AttackLine);
   }
   if (!summary.honest.empty() || summary.plain) {
-    out += Padded("honest", 24) + " runs   veh-h   acc/h wdrawn%  valid%   occls surviv%   same%\n";
+    out += Padded("honest", 24) +
+           " runs   veh-h   acc/h wdrawn%  valid%   held%   occls surviv% budget%   same%\n";
     if (summary.plain) {
       Group plain = *summary.plain;
       plain.id = "(no overlay)";

@@ -30,6 +30,13 @@ struct Cell {
   Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
 };
 
+/// A PRIORITY track at one instant.
+struct Listed {
+  std::int64_t id = 0;
+  Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
+  double budget_s = 0.0;  // As published; NaN: none applies.
+};
+
 /// Since when both kinds of sensors have seen each vehicle.
 class Views {
  public:
@@ -163,7 +170,8 @@ class Follower {
       const auto placed = PlaceTracks(log_, NewestBy(log_.lists[Index(ListKind::kPriority)], t),
                                       ListKind::kPriority, t);
       for (const PlacedTrack& track : placed) {
-        tracks_[k].push_back({track.track->id, track.motion_W.position()});
+        tracks_[k].push_back(
+            {track.track->id, track.motion_W.position(), track.track->bridge_budget_s});
       }
     }
   }
@@ -182,7 +190,7 @@ class Follower {
         truths.push_back(At(v, k).p_W);
         there.push_back(v);
       }
-      for (const auto& [id, p_W] : tracks_[k]) tracks.push_back(p_W);
+      for (const Listed& track : tracks_[k]) tracks.push_back(track.p_W);
       const std::vector<int>& assignment = gospa.FromPoints(truths, tracks).assignment;
       for (std::size_t i = 0; i < there.size(); ++i) {
         const std::size_t v = there[i];
@@ -194,17 +202,10 @@ class Follower {
     }
   }
 
-  // The place of a track at an instant, or null.
-  [[nodiscard]] const Eigen::Vector2d* TrackAt(std::int64_t id, std::size_t k) const {
-    for (const auto& [track, p_W] : tracks_[k]) {
-      if (track == id) return &p_W;
-    }
-    return nullptr;
-  }
-
   [[nodiscard]] bool IsOnTrack(std::int64_t id, std::size_t v, std::size_t k) const {
-    const Eigen::Vector2d* p_W = TrackAt(id, k);
-    return p_W != nullptr && (*p_W - At(v, k).p_W).norm() < HonestTreatment::kBridgeError_m;
+    const auto track = std::ranges::find(tracks_[k], id, &Listed::id);
+    return track != tracks_[k].end() &&
+           (track->p_W - At(v, k).p_W).norm() < HonestTreatment::kBridgeError_m;
   }
 
   void Bridge(std::size_t v, HonestTreatment& result) const {
@@ -233,30 +234,33 @@ class Follower {
     for (std::size_t k = from - 1; k <= to && k < grid_.size(); ++k) {
       if (!At(v, k).is_present) return;
     }
-    std::optional<std::int64_t> id;
+    const Listed* held = nullptr;
     double least_m = HonestTreatment::kBridgeError_m;
-    for (const auto& [track, p_W] : tracks_[from - 1]) {
-      const double error_m = (p_W - At(v, from - 1).p_W).norm();
+    for (const Listed& track : tracks_[from - 1]) {
+      const double error_m = (track.p_W - At(v, from - 1).p_W).norm();
       if (error_m >= least_m) continue;
       least_m = error_m;
-      id = track;
+      held = &track;
     }
-    if (!id) return;
+    if (held == nullptr) return;
+    const bool is_in_budget = !(held->budget_s < hidden_s);
     ++result.bridges;
+    result.bridges_in_budget += is_in_budget ? 1 : 0;
     for (std::size_t k = from; k < to; ++k) {
-      if (!IsOnTrack(*id, v, k)) return;
+      if (!IsOnTrack(held->id, v, k)) return;
     }
     ++result.bridges_survived;
-    if (after < grid_.size() && IsOnTrack(*id, v, after)) ++result.bridges_same_id;
+    result.survived_in_budget += is_in_budget ? 1 : 0;
+    if (after < grid_.size() && IsOnTrack(held->id, v, after)) ++result.bridges_same_id;
   }
 
   const RunLog& log_;
   std::vector<Timestamp> grid_;
   double period_s_ = 0.05;
-  std::vector<std::size_t> vehicles_;  // With V2V: indices into Truth::objects.
-  std::vector<bool> is_honest_;        // ... and heard, and no attacker speaks for it.
-  std::vector<Cell> cells_;            // vehicles x grid.
-  std::vector<std::vector<std::pair<std::int64_t, Eigen::Vector2d>>> tracks_;  // By instant.
+  std::vector<std::size_t> vehicles_;        // With V2V: indices into Truth::objects.
+  std::vector<bool> is_honest_;              // ... and heard, and no attacker speaks for it.
+  std::vector<Cell> cells_;                  // vehicles x grid.
+  std::vector<std::vector<Listed>> tracks_;  // By instant.
 };
 
 }  // namespace
@@ -275,6 +279,8 @@ void HonestTreatment::Add(const HonestTreatment& other) {
   bridges += other.bridges;
   bridges_survived += other.bridges_survived;
   bridges_same_id += other.bridges_same_id;
+  bridges_in_budget += other.bridges_in_budget;
+  survived_in_budget += other.survived_in_budget;
 }
 
 HonestTreatment JudgeHonest(const RunLog& log, const Senders& senders,

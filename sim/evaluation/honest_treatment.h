@@ -35,6 +35,10 @@ struct HonestTreatment {
   int bridges = 0;
   int bridges_survived = 0;  ///< ... whose track stayed within 2 m throughout.
   int bridges_same_id = 0;   ///< ... and that have the same track a second after.
+  /// Those that were over before the bridge's budget was, as it was published when they began. No
+  /// other can survive but by a glimpse.
+  int bridges_in_budget = 0;
+  int survived_in_budget = 0;
 
   void Add(const HonestTreatment& other);
 };

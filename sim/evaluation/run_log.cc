@@ -102,6 +102,7 @@ class Reader {
       out.start = FromMicros(track.start_utime);
       out.visibility = track.visibility;
       out.trust = track.trust_state;
+      out.bridge_budget_s = track.bridge_budget_s;
       list.tracks.push_back(out);
     }
     log_.lists[Index(kind)].push_back(std::move(list));

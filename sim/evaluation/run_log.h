@@ -32,9 +32,10 @@ struct ListedTrack {
   double width_m = 0.0;
   int object_class = 0;
   std::uint32_t sender = 0;
-  Timestamp start{};   ///< When the track began.
-  int visibility = 0;  ///< Constants of track_t: visible, hidden, out of view.
-  int trust = 0;       ///< Constants of track_t; of the sender, where there is one.
+  Timestamp start{};             ///< When the track began.
+  int visibility = 0;            ///< Constants of track_t: visible, hidden, out of view.
+  int trust = 0;                 ///< Constants of track_t; of the sender, where there is one.
+  double bridge_budget_s = 0.0;  ///< Of PRIORITY; NaN elsewhere.
 };
 
 struct ReceivedList {

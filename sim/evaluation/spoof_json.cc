@@ -120,6 +120,8 @@ Json FromHonest(const HonestTreatment& h) {
           {"bridges", h.bridges},
           {"bridges_survived", h.bridges_survived},
           {"bridges_same_id", h.bridges_same_id},
+          {"bridges_in_budget", h.bridges_in_budget},
+          {"survived_in_budget", h.survived_in_budget},
           {"accusations_per_vehicle_hour", Share(h.accusations, hours)},
           {"withdrawn_share", Share(h.withdrawn_s, h.vehicle_s)},
           {"validated_share", Share(h.validated, h.in_view)},
@@ -142,6 +144,8 @@ HonestTreatment ToHonest(const Json& json) {
   h.bridges = json.value("bridges", 0);
   h.bridges_survived = json.value("bridges_survived", 0);
   h.bridges_same_id = json.value("bridges_same_id", 0);
+  h.bridges_in_budget = json.value("bridges_in_budget", 0);
+  h.survived_in_budget = json.value("survived_in_budget", 0);
   return h;
 }
 
@@ -260,9 +264,11 @@ std::string SpoofTable(const SpoofRun& run) {
                                      std::to_string(h.in_view) + " messages in view");
   out += Line("held in PRIORITY",
               Percent(h.held_s, h.holdable_s) + " of " + Fixed(h.holdable_s, 1) + " s possible");
-  out += Line("occlusions of 3..6 s", std::to_string(h.bridges) + ", survived " +
-                                          std::to_string(h.bridges_survived) + ", same id after " +
-                                          std::to_string(h.bridges_same_id));
+  out += Line("occlusions of 3..6 s",
+              std::to_string(h.bridges) + ", survived " + std::to_string(h.bridges_survived) +
+                  " (within the budget " + std::to_string(h.bridges_in_budget) + ", survived " +
+                  std::to_string(h.survived_in_budget) + "), same id after " +
+                  std::to_string(h.bridges_same_id));
   return out;
 }
 

@@ -72,12 +72,14 @@ class Bridging : public testing::Test {
     AtTenHertz(0.0, 12.0, [&](double t) { scene.Say(t, 11, kFirst, 1, 3); });
     for (int k = 0; k <= 240; ++k) {
       const double t = 0.05 * k;
-      if (id(t) != 0) scene.AddTrack(id(t), kFirst, Eigen::Vector2d(40.0, 0.0) + error(t));
+      if (id(t) != 0)
+        scene.AddTrack(id(t), kFirst, Eigen::Vector2d(40.0, 0.0) + error(t), budget_s_);
       scene.List(t);
     }
     return Judged(scene);
   }
   double hidden_to_s_ = 8.0;
+  double budget_s_ = 10.0;
 };
 
 Eigen::Vector2d None(double) { return Eigen::Vector2d::Zero(); }
@@ -112,6 +114,17 @@ TEST_F(Bridging, ATrackThatStraysOrEndsDoesNot) {
   EXPECT_EQ(ended.bridges, 1);
   EXPECT_EQ(ended.bridges_survived, 0);
   EXPECT_LT(ended.held_s, ended.holdable_s);
+}
+
+TEST_F(Bridging, WhatOutlastsTheBudgetIsToldApart) {
+  for (const auto& [budget_s, is_within] : {std::pair{4.5, 1}, {3.5, 0}}) {
+    budget_s_ = budget_s;
+    const HonestTreatment h = Track(None, [](double t) { return t < 7.5 ? 5 : 0; });
+    EXPECT_EQ(h.bridges, 1);
+    EXPECT_EQ(h.bridges_in_budget, is_within);
+    EXPECT_EQ(h.survived_in_budget, 0);
+    EXPECT_EQ(Track(None, [](double) { return 5; }).survived_in_budget, is_within);
+  }
 }
 
 TEST_F(Bridging, ANewIdAfterwardsIsNotTheSame) {

@@ -103,13 +103,15 @@ BsmTruth& SpoofScene::Say(double t_s, std::int64_t device, std::uint32_t sender,
   return log_.bsm_truths.back();
 }
 
-void SpoofScene::AddTrack(std::int64_t id, std::uint32_t sender, const Eigen::Vector2d& p_W) {
+void SpoofScene::AddTrack(std::int64_t id, std::uint32_t sender, const Eigen::Vector2d& p_W,
+                          double budget_s) {
   ListedTrack track;
   track.id = id;
   track.sender = sender;
   track.motion_B.x_m = p_W.x();  // The ego's body frame is W.
   track.motion_B.y_m = p_W.y();
   track.object_class = 1;
+  track.bridge_budget_s = budget_s;
   next_.tracks.push_back(track);
 }
 

@@ -24,7 +24,8 @@ class SpoofScene {
   BsmTruth& Say(double t_s, std::int64_t device, std::uint32_t sender, std::int64_t vehicle,
                 int trust, const std::string& refusal = "");
   /// A PRIORITY list at `t_s` with the tracks given since the last one.
-  void AddTrack(std::int64_t id, std::uint32_t sender, const Eigen::Vector2d& p_W);
+  void AddTrack(std::int64_t id, std::uint32_t sender, const Eigen::Vector2d& p_W,
+                double budget_s = 10.0);
   void List(double t_s);
   void Report(double t_s, std::uint32_t sender, bool is_accusation);
   /// Looks of both sensors at 20 Hz, which make cars holdable by the bound.
