@@ -105,10 +105,14 @@ bool SenderTrust::TryValidate(const ValidationEvidence& evidence, const TrustCon
   if (state_ != TrustState::kCandidate || evidence.is_ego_gnss_suspect) return false;
   if (consistent_run_ < config.candidate_messages || evidence.is_accuracy_poor) return false;
   const bool is_known = released_ && ToSeconds(evidence.stamp - *released_) <= config.again_s;
-  if (evidence.co_observations < (is_known ? config.again_observations : config.co_observations)) {
+  const auto has_seen = [&](int observations, double observed_s) {
+    return evidence.co_observations >= observations && evidence.span_s >= observed_s;
+  };
+  if (!has_seen(config.co_observations, config.co_observed_s) &&
+      !has_seen(config.slow_observations, config.slow_observed_s) &&
+      !(is_known && has_seen(config.again_observations, config.again_observed_s))) {
     return false;
   }
-  if (evidence.span_s < (is_known ? config.again_observed_s : config.co_observed_s)) return false;
   if (!evidence.is_level_plausible || !evidence.is_size_plausible) return false;
   if (!evidence.is_nis_consistent || !evidence.is_speed_consistent) return false;
   if (evidence.margin < evidence.min_margin) return false;

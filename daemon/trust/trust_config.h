@@ -16,6 +16,8 @@ struct TrustConfig {
   int candidate_messages = 3;     ///< Consistent messages that make a CANDIDATE.
   int co_observations = 10;       ///< Claims seen together with the sensors before VALIDATED ...
   double co_observed_s = 1.5;     ///< ... and over this long.
+  int slow_observations = 4;      ///< So many suffice, from whoever speaks at 1 Hz ...
+  double slow_observed_s = 2.8;   ///< ... over this long.
   int again_observations = 5;     ///< Relied on in the last again_s and not blamed: so many ...
   double again_observed_s = 0.6;  ///< ... over so long suffice.
   double again_s = 10.0;
@@ -52,6 +54,8 @@ struct TrustConfig {
     a.Field("candidate_messages", candidate_messages, {.at_least = 1, .at_most = 100});
     a.Field("co_observations", co_observations, {.at_least = 2, .at_most = 1000});
     a.Field("co_observed_s", co_observed_s, {.at_least = 0.2, .at_most = 60.0});
+    a.Field("slow_observations", slow_observations, {.at_least = 2, .at_most = 1000});
+    a.Field("slow_observed_s", slow_observed_s, {.at_least = 0.2, .at_most = 60.0});
     a.Field("again_observations", again_observations, {.at_least = 2, .at_most = 1000});
     a.Field("again_observed_s", again_observed_s, {.at_least = 0.2, .at_most = 60.0});
     a.Field("again_s", again_s, {.at_least = 0.0, .at_most = 600.0});

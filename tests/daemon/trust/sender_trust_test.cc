@@ -105,6 +105,19 @@ TEST(SenderTrust, EveryPieceOfEvidenceIsNeeded) {
   EXPECT_FALSE(unknown.TryValidate(Good(), kConfig));
 }
 
+// What a channel that is full leaves of a sender's rate.
+TEST(SenderTrust, WhoSpeaksOnceASecondIsValidatedByFewerMessagesOverALongerTime) {
+  ValidationEvidence evidence = Good();
+  evidence.co_observations = 4;
+  evidence.span_s = 3.0;
+  EXPECT_TRUE(Candidate().TryValidate(evidence, kConfig));
+  evidence.span_s = 2.0;
+  EXPECT_FALSE(Candidate().TryValidate(evidence, kConfig));
+  evidence.co_observations = 3;
+  evidence.span_s = 3.0;
+  EXPECT_FALSE(Candidate().TryValidate(evidence, kConfig));
+}
+
 TEST(SenderTrust, BridgesAndComesBack) {
   SenderTrust trust = Validated();
   trust.OnSensorsLost();
