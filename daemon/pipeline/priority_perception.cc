@@ -13,12 +13,6 @@ namespace {
 // Ego GNSS moving the alignment by more than this at once changes every residual; no sender's
 // doing.
 constexpr double kAlignmentStep_m = 2.0;
-constexpr double kTurns_s = 0.5;       // So many seconds' turns may be saved up.
-constexpr double kHeightMemory = 0.1;  // Weight of a new height in the smoothed one.
-
-double Smoothed(const std::optional<double>& old, double value) {
-  return old ? *old + kHeightMemory * (value - *old) : value;
-}
 
 }  // namespace
 
@@ -236,96 +230,6 @@ std::optional<BiasPrior> PriorityPerception::PriorOf(const Link& link) const {
   const Eigen::Matrix2d R_OL = alignment_.X_LO().rotation().transpose();
   return BiasPrior{R_OL * link.prior_en->mean_en,
                    R_OL * link.prior_en->covariance * R_OL.transpose()};
-}
-
-PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
-                                                           const ClaimInOdometry& here,
-                                                           const EgoState& ego) {
-  const PriorityConfig& config = settings_->priority;
-  Link* link = FindLink(claim.sender);
-  if (link == nullptr) {
-    const auto is_near = [&](const Eigen::Vector2d& p_O) {
-      return (p_O - here.p_O).squaredNorm() < config.interest_m * config.interest_m;
-    };
-    const double distance_m = (ego.X_OB.origin().vector() - here.p_O).norm();
-    const bool is_of_interest =
-        distance_m < config.trust.place.max_distance_m ||
-        std::ranges::any_of(
-            sensed_,
-            [&](const Sensed& sensed) { return is_near(sensed.track.state_O.mean.head<2>()); }) ||
-        std::ranges::any_of(vehicles_, [&](const PriorityVehicle& vehicle) {
-          return is_near(vehicle.filter.mean().head<2>());
-        });
-    if (!is_of_interest) return nullptr;
-    const bool is_full = links_.size() >= static_cast<std::size_t>(config.max_senders);
-    if (is_full && !TakeTurn(here.stamp)) return nullptr;
-    const Tombstones::Stone* own = tombstones_.Find(claim.sender);
-    std::optional<Tombstones::Stone> stone;
-    if (own != nullptr) {
-      stone = *own;
-    } else {
-      stone = tombstones_.TakeFor(claim.sender, claim.certificate, claim.first_heard, here.stamp,
-                                  here.p_O, here.velocity_O(), config.trust.tombstone);
-    }
-    const bool is_penalised = stone && stone->penalty.state != TrustState::kNone;
-    if (is_full && !MakeRoom(is_penalised)) return nullptr;
-    const auto at = std::ranges::lower_bound(links_, claim.sender, {}, &Link::sender);
-    link = &*links_.insert(at, Link{});
-    link->sender = claim.sender;
-    link->last = here;
-    if (stone) {
-      link->trust.Inherit(stone->penalty);
-      link->place = stone->place;
-    }
-  }
-  link->length_m = claim.length_m;
-  link->width_m = claim.width_m;
-  link->certificate = claim.certificate;
-  link->is_accuracy_poor = claim.accuracy_is_poor;
-  if (claim.has_elevation) link->height_m = Smoothed(link->height_m, claim.height_m);
-  return link;
-}
-
-// Where more senders speak near by than can be followed, each keeps its place long enough to be
-// judged: were everyone let in at once, nobody's second message would find the first's record.
-bool PriorityPerception::TakeTurn(Timestamp now) {
-  const double rate_hz = settings_->priority.turnover_hz;
-  if (turns_refilled_) {
-    const double since_s = std::max(0.0, ToSeconds(now - *turns_refilled_));
-    turns_ = std::min(kTurns_s * rate_hz, turns_ + since_s * rate_hz);
-  } else {
-    turns_ = kTurns_s * rate_hz;
-  }
-  turns_refilled_ = now;
-  if (turns_ < 1.0) return false;
-  turns_ -= 1.0;
-  return true;
-}
-
-// Room is made by whom the least is lost with: the penalised, whose stones remember them, then
-// strangers away from all tracks, then other strangers; among equals whoever was not heard for
-// longest. Nobody with a vehicle is given up, so that no flood of identities drives them out.
-bool PriorityPerception::MakeRoom(bool for_penalised) {
-  const auto rank = [&](const Link& link) {
-    if (link.trust.has_penalty()) return 0;
-    return pairs_.AssignedTo(link.sender) == nullptr ? 1 : 2;
-  };
-  auto least = links_.end();
-  int least_rank = 0;
-  for (auto link = links_.begin(); link != links_.end(); ++link) {
-    if (VehicleOf(link->sender) != nullptr) continue;
-    const int link_rank = rank(*link);
-    if (for_penalised && link_rank > 0) continue;
-    if (least == links_.end() ||
-        std::pair(link_rank, link->last.stamp) < std::pair(least_rank, least->last.stamp)) {
-      least = link;
-      least_rank = link_rank;
-    }
-  }
-  if (least == links_.end()) return false;
-  pairs_.DropSender(least->sender);
-  links_.erase(least);
-  return true;
 }
 
 void PriorityPerception::EndVehicle(PriorityVehicle& vehicle, Timestamp stamp) {

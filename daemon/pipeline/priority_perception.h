@@ -104,7 +104,7 @@ class PriorityPerception {
     std::uint64_t compared_id = 0;   // LOCAL track of the last residual; 0 = none.
     int breaks = 0;                  // Above 0: its messages lately did not continue each other.
     int odd_claims = 0;              // In a row that are not where the sensors see the sender.
-    std::optional<double> height_m;  // Smoothed; GNSS heights are noisy.
+    std::optional<double> height_m;  // Smoothed.
     std::optional<BiasEstimate> prior_en;
     std::uint64_t heir_of = 0;  // Vehicle it may continue under this new id; 0 = none.
     int heir_claims = 0;
@@ -124,6 +124,11 @@ class PriorityPerception {
   };
   static constexpr double kOnePlace_m = 2.0;       // Centres of two vehicles are never so close.
   static constexpr double kStandingReach_m = 2.0;  // Standing returns so near may be a vehicle.
+  // GNSS heights are noisy.
+  static double Smoothed(const std::optional<double>& old, double value) {
+    constexpr double kNewest = 0.1;
+    return old ? *old + kNewest * (value - *old) : value;
+  }
   static bool IsRecent(const Link& link, Timestamp now);
   struct Settings {
     PriorityConfig priority;

@@ -113,7 +113,7 @@ class Timeline {
   std::vector<std::unique_ptr<Event>> spare_events_;
   std::vector<std::unique_ptr<Checkpoint>> spare_checkpoints_;
   std::vector<BiasResidual> settled_residuals_;
-  std::vector<Reported> reported_;  // Of the buffer's time.
+  std::vector<Reported> reported_;         // Of the buffer's time.
   std::optional<Timestamp> newest_local_;  // Of any input LOCAL reads.
   Timestamp newest_{};                     // Of any frame or claim.
   Timestamp settled_{};
