@@ -103,6 +103,7 @@ void PriorityPerception::CompareWithSensors(Link& link, PriorityVehicle* vehicle
   const Sensed* sensed = FindSensed(local_id);
   if (sensed != nullptr) observation.extent_sigma_m = 0.5 * sensed->track.extent.length_sigma_m;
   observation.is_partial = sensed != nullptr && sensed->is_partial && link.trust.is_relied_on();
+  observation.is_doubtful = sensed != nullptr && sensed->is_doubtful;
   observation.is_plausible = IsVouchedFor(link);
   observation.is_own_motion_whole = link.breaks == 0;
   observation.is_ego_shifted = IsShifted(here.stamp);

@@ -17,8 +17,8 @@ constexpr double kApart_m = 0.7;
 // A bridge is explained by a track, but not from the next lane.
 constexpr double kMostSlack_m = 1.0;
 constexpr double kMostBias = 0.95;  // Of what a bias may be: the filter stops there.
-// A vehicle of which a sensor has had but a part may be misjudged by that part until it has been
-// seen whole for so long.
+// A vehicle of which a sensor has had but a part so lately may be misjudged by that part, and its
+// track stays in doubt until it has been seen whole for as long.
 constexpr double kPart_s = 0.5;
 constexpr double kPartPosition_m = 0.5;
 constexpr double kPartYaw_rad = FromDegrees(8.0);
@@ -72,7 +72,7 @@ void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& 
   sensed_stamp_ = frame.stamp;
   parts_.clear();
   for (const Sensed& sensed : sensed_) {
-    if (sensed.part) parts_.push_back(*sensed.part);
+    if (sensed.parts) parts_.push_back(*sensed.parts);
   }
   sensed_.clear();
   for (const LocalTrack& track : frame.tracks) {
@@ -85,21 +85,25 @@ void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& 
         pairs_.pairs(), [&](const PairTable::Pair& pair) { return pair.track_id == track.id; });
     const bool is_sure = has_pair && AreSensorsSure(track, frame, map, settings_->vehicle,
                                                     settings_->priority.sensor_support);
-    Sensed& sensed = sensed_.emplace_back(Sensed{track, is_sure, is_hit, {}, false});
-    const auto before = std::ranges::find(parts_, track.id, &PartialLook::track_id);
-    if (before != parts_.end()) sensed.part = *before;
+    Sensed& sensed =
+        sensed_.emplace_back(Sensed{.track = track, .is_sure = is_sure, .is_hit = is_hit});
+    const auto before = std::ranges::find(parts_, track.id, &PartialLooks::track_id);
+    if (before != parts_.end()) sensed.parts = *before;
     const bool is_of_a_part = std::ranges::any_of(frame.updates, [&](const SensorUpdate& update) {
       return update.track_id == track.id &&
              IsOfAPart(update.measurement, settings_->priority.bridge);
     });
     if (is_of_a_part) {
-      sensed.part = PartialLook{track.id, std::nullopt};
-    } else if (is_hit && sensed.part && !sensed.part->whole) {
-      sensed.part->whole = frame.stamp;
+      sensed.parts = PartialLooks{track.id, frame.stamp, std::nullopt};
+    } else if (is_hit && sensed.parts && !sensed.parts->whole) {
+      sensed.parts->whole = frame.stamp;
     }
-    // A track that coasts goes on as the part had it, however long.
-    sensed.is_partial = sensed.part && (!sensed.part->whole ||
-                                        ToSeconds(track.LastHit() - *sensed.part->whole) < kPart_s);
+    if (sensed.parts) {
+      const auto& [id, last, whole] = *sensed.parts;
+      sensed.is_partial = ToSeconds(frame.stamp - last) <= kPart_s;
+      // A track that coasts goes on as the part had it, however long.
+      sensed.is_doubtful = !whole || ToSeconds(track.LastHit() - *whole) < kPart_s;
+    }
     if (sensed.is_partial) AddDoubt(sensed.track.state_O.covariance);
   }
 }
@@ -149,6 +153,8 @@ void PriorityPerception::StepVehicle(PriorityVehicle& vehicle, const LocalFrame&
   LookForReturn(vehicle, frame.stamp);
   if (vehicle.is_supported) return link->trust.OnSensorsRegained();
   if (const auto finding = Contradiction(vehicle, frame.stamp)) {
+    const Sensed* elsewhere = FindSensed(vehicle.elsewhere_id);
+    if (elsewhere != nullptr && elsewhere->is_doubtful) return EndVehicle(vehicle, frame.stamp);
     link->trust.OnFinding(frame.stamp, *finding, MayAccuse(frame.stamp));
     return Report(*link, frame.stamp, outputs);
   }

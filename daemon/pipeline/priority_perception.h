@@ -109,18 +109,20 @@ class PriorityPerception {
     std::uint64_t heir_of = 0;  // Vehicle it may continue under this new id; 0 = none.
     int heir_claims = 0;
   };
-  // A look had but a part of a LOCAL track.
-  struct PartialLook {
+  // Looks that had but a part of a LOCAL track.
+  struct PartialLooks {
     std::uint64_t track_id = 0;
-    std::optional<Timestamp> whole;  // The first look since then that had it whole.
+    Timestamp last{};                // The last of them ...
+    std::optional<Timestamp> whole;  // ... and the first look since then that had it whole.
   };
   // A LOCAL track as of the newest frame.
   struct Sensed {
     LocalTrack track;      // Known by a part only: with more doubt than LOCAL itself has.
     bool is_sure = false;  // The sensors alone are sure enough for PRIORITY.
     bool is_hit = false;   // Given a measurement in that frame.
-    std::optional<PartialLook> part;
-    bool is_partial = false;  // It may mislead still.
+    std::optional<PartialLooks> parts{};
+    bool is_partial = false;   // A part of it was seen so lately that it may mislead.
+    bool is_doubtful = false;  // ... and since then it has not been seen whole for long enough.
   };
   static constexpr double kOnePlace_m = 2.0;       // Centres of two vehicles are never so close.
   static constexpr double kStandingReach_m = 2.0;  // Standing returns so near may be a vehicle.
@@ -206,7 +208,7 @@ class PriorityPerception {
   std::vector<Sensed> sensed_;  // By LOCAL id; all tracks of the newest frame.
   Timestamp sensed_stamp_{};
   Scratch<std::vector<SenderResidual>> residual_means_;
-  Scratch<std::vector<PartialLook>> parts_;
+  Scratch<std::vector<PartialLooks>> parts_;
   PairTable pairs_;
   std::vector<PriorityVehicle> vehicles_;  // By id; id 0 = ended in this step.
   Tombstones tombstones_;

@@ -122,8 +122,7 @@ std::optional<Finding> PriorityPerception::Contradiction(PriorityVehicle& vehicl
   const KinematicState here = vehicle.filter.kinematics();
   for (const Sensed& sensed : sensed_) {
     const LocalTrack& track = sensed.track;
-    if (!sensed.is_hit || sensed.is_partial) continue;
-    if (track.radar_hits + track.camera_hits < config.regain_hits) continue;
+    if (!sensed.is_hit || track.radar_hits + track.camera_hits < config.regain_hits) continue;
     const bool is_own = track.id == vehicle.local_id;
     if (!is_own && (IsHeld(track.id) || ToSeconds(vehicle.last_support - track.start) > kSlack_s)) {
       continue;

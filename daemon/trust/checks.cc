@@ -135,6 +135,13 @@ Eigen::Vector3d ResidualHistory::Reference() const {
   return 0.5 * (blocks_[oldest % kBlocks] + blocks_[(oldest + 1) % kBlocks]);
 }
 
+bool IsFarApart(const CoObservation& now, const TrustConfig& config) {
+  const Eigen::Vector2d shift_O = now.is_ego_shifted ? now.shift_O : Eigen::Vector2d::Zero();
+  return Excess(now.residual_O - shift_O, now, config.level_withdraw_m,
+                {now.alignment_sigma_m, config.stale_position_s * std::abs(now.track_speed_mps)}) >
+         1.0;
+}
+
 std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config) {
   if (!history.is_settled()) return std::nullopt;

@@ -35,6 +35,8 @@ struct CoObservation {
   /// The sensors have but a part of the vehicle, along which they drag their track: no residual to
   /// judge by, but one that may be torn.
   bool is_partial = false;
+  /// The sensors have not had the whole vehicle for long enough since: what differs blames nobody.
+  bool is_doubtful = false;
   bool is_own_motion_whole = true;  ///< The sender's messages have lately continued each other.
   bool is_plausible = true;     ///< The pair is: what agrees only by a large bias cleans nobody.
   bool is_ego_shifted = false;  ///< Common mode: `shift_O` is our own fault, its history unknown.
@@ -102,6 +104,10 @@ class ResidualHistory {
   Eigen::Vector3d block_sum_ = Eigen::Vector3d::Zero();
   int block_size_ = 0;
 };
+
+/// Whether one residual alone exceeds the level at which its mean would be withdrawn; what the
+/// sensors doubt of themselves does not count.
+bool IsFarApart(const CoObservation& now, const TrustConfig& config);
 
 /// C8: level of the mean raw residual, along and across the vehicle's direction.
 std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObservation& now,

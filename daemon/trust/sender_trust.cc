@@ -61,6 +61,12 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
     StartAgain(observation.stamp);
     return false;
   }
+  // A track that breaks off again and again never settles for the checks below.
+  if (is_relied_on() && observation.is_own_motion_whole &&
+      track_motion_.HasBroken(observation.stamp) && IsFarApart(observation, config)) {
+    StartAgain(observation.stamp);
+    return false;
+  }
   if (observation.is_partial) return true;
   std::optional<Finding> gravest;
   for (const auto check : {CheckLevel, CheckDrift, CheckVelocity, CheckAcceleration}) {
@@ -72,8 +78,10 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
     if (observation.is_plausible) clean_s_ += std::clamp(dt_s, 0.0, kMostCredit_s);
     return true;
   }
-  // The sensors broke off, not the sender.
-  if (observation.is_own_motion_whole && track_motion_.HasBroken(observation.stamp)) {
+  // The sensors broke off or strayed, not the sender.
+  const bool is_track_in_doubt =
+      observation.is_doubtful || track_motion_.HasBroken(observation.stamp);
+  if (observation.is_own_motion_whole && is_track_in_doubt) {
     if (has_penalty()) return true;
     StartAgain(observation.stamp);
     return false;

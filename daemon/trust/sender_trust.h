@@ -66,8 +66,9 @@ class SenderTrust {
   /// A claim beside its LOCAL track. Acts on the gravest finding; TakeVerdict() tells.
   /// A sender whose own messages broke off when the two were torn apart is withdrawn at once.
   /// @return false where they were torn apart while the sender's messages continue each other: the
-  /// LOCAL track has jumped to something else, or has lately changed its velocity as no vehicle
-  /// can. Then nobody is to blame and the sender starts from zero; Release() has been called.
+  /// LOCAL track has jumped to something else, has lately changed its velocity as no vehicle can,
+  /// or has had but a part of the vehicle. Then nobody is to blame and the sender starts from zero;
+  /// Release() has been called.
   bool OnCoObservation(const CoObservation& observation, bool may_accuse,
                        const TrustConfig& config);
 

@@ -273,6 +273,25 @@ TEST(SenderTrust, ATrackThatMovesAsNoVehicleCanBlamesNobody) {
   EXPECT_EQ(liar.state(), TrustState::kSuspect);
 }
 
+// It breaks off twice a second and strays on, 2 m a second: the checks never settle.
+TEST(SenderTrust, ATrackThatBreaksOffAgainAndAgainIsLeftBeforeItIsFar) {
+  SenderTrust trust = Validated();
+  double apart_m = 0.0;
+  for (int i = 0; i < 100 && trust.is_relied_on(); ++i) {
+    apart_m = 0.2 * std::max(0, i - 20);
+    CoObservation observation = Residual(0.0, apart_m);
+    observation.stamp = At(0.1 * i);
+    observation.is_partial = i % 3 != 0;
+    observation.sensed_sigma_m = 1.3;
+    observation.track_yaw_rad = i > 20 && i / 5 % 2 == 0 ? 0.4 : 0.0;
+    observation.velocity_residual_O = Eigen::Vector2d(0.0, 2.0);
+    trust.OnCoObservation(observation, true, kConfig);
+  }
+  EXPECT_EQ(trust.state(), TrustState::kCandidate);
+  EXPECT_FALSE(trust.TakeVerdict().has_value());
+  EXPECT_LT(apart_m, 7.0);
+}
+
 // While the sender was a stranger, the track strayed and came back in one step.
 TEST(SenderTrust, WhatWasOffBeforeTheTrackCameBackIsNoDrift) {
   SenderTrust trust = Candidate();
