@@ -18,6 +18,7 @@ constexpr double kUnknownAccel_mps2 = 4.0;
 constexpr double kOwnMotionFloor_m = 2.0;
 constexpr int kBreakMemory = 30;  // Messages for which a break of the own motion is held against.
 constexpr int kMostVelocityDoubts = 2;
+constexpr double kLongestLost_s = 10.0;  // A sender that does not know its place says nothing then.
 
 // Findings that a second device under the same id brings, whoever of the two lies.
 bool IsOfAJump(std::string_view check) {
@@ -43,7 +44,7 @@ void PriorityPerception::JudgeMessages(Link& link, const PriorityVehicle* vehicl
                                        const Claim& claim, const ClaimInOdometry& here) {
   const TrustConfig& config = settings_->priority.trust;
   bool is_consistent = true;
-  if (link.has_last) {
+  if (link.has_last && !claim.accuracy_is_poor) {
     const ClaimInOdometry& last = link.last;
     const double dt_s = std::max(0.0, ToSeconds(here.stamp - last.stamp));
     const double speed_mps = 0.5 * (last.speed_mps + here.speed_mps);
@@ -140,31 +141,55 @@ void PriorityPerception::UseClaim(Link& link, PriorityVehicle& vehicle,
       vehicle.co_observed_s += std::clamp(since_last_s, 0.0, config.bridge.max_gap_s);
     return;
   }
-  vehicle.misfits_in_a_row = fit.is_used && fit.is_velocity_used ? 0 : vehicle.misfits_in_a_row + 1;
-  if (vehicle.misfits_in_a_row >= config.bridge.max_misfits && fit.is_used) {
-    // The place fits and the motion does not: it was last measured by a part of the vehicle, or the
-    // vehicle has braked or turned. Where it can be is bounded all the same.
-    vehicle.filter.DoubtVelocity();
-    vehicle.misfits_in_a_row = 0;
-    if (++vehicle.velocity_doubts > kMostVelocityDoubts) return EndVehicle(vehicle, here.stamp);
+  CountMisfits(vehicle, fit.is_used && fit.is_velocity_used, fit.is_used, here.stamp);
+  if (vehicle.id == 0) return;
+  if (vehicle.misfits_in_a_row < config.bridge.max_misfits) {
+    return KeepWithinReach(link, vehicle, here.stamp);
   }
   // While a sender's messages continue each other, what does not fit may be what we carried: the
   // last look had but a part of the vehicle, or the vehicle has turned. Then the bridge just ends.
-  const bool is_own_break = link.breaks > 0;
-  const Eigen::Vector2d p_O = vehicle.filter.mean().head<2>();
-  if (vehicle.misfits_in_a_row >= config.bridge.max_misfits) {
-    if (!is_own_break) return EndVehicle(vehicle, here.stamp);
-    link.trust.OnFinding(here.stamp,
-                         {"bridge_misfit", Verdict::kWithdraw, "position_nis", fit.position_nis,
-                          config.filter.position_gate},
-                         MayAccuse(here.stamp));
-  } else if (!vehicle.CanReach(p_O, here.stamp, config.bridge)) {
-    if (!is_own_break) return EndVehicle(vehicle, here.stamp);
-    link.trust.OnFinding(here.stamp,
-                         {"out_of_reach", Verdict::kWithdraw, "distance_m",
-                          (p_O - vehicle.coast.state().mean.head<2>()).norm(), 0.0},
-                         MayAccuse(here.stamp));
+  if (link.breaks == 0) return EndVehicle(vehicle, here.stamp);
+  link.trust.OnFinding(here.stamp,
+                       {"bridge_misfit", Verdict::kWithdraw, "position_nis", fit.position_nis,
+                        config.filter.position_gate},
+                       MayAccuse(here.stamp));
+}
+
+// The sensors alone place the vehicle meanwhile, and while it is hidden it goes on as it says.
+void PriorityPerception::UseMotion(Link& link, PriorityVehicle& vehicle,
+                                   const ClaimInOdometry& here) {
+  const PriorityConfig& config = settings_->priority;
+  if (!link.trust.is_relied_on()) return;
+  if (ToSeconds(here.stamp - link.last.stamp) > kLongestLost_s) {
+    return EndVehicle(vehicle, here.stamp);
   }
+  vehicle.PredictTo(here.stamp, config.filter);
+  const bool is_used = vehicle.filter.UpdateMotion(here, config.filter);
+  vehicle.last_v2v = here.stamp;
+  if (vehicle.is_supported) return;
+  CountMisfits(vehicle, is_used, true, here.stamp);
+  if (vehicle.id != 0) KeepWithinReach(link, vehicle, here.stamp);
+}
+
+// Where the place fits and the motion does not, the motion was last measured by a part of the
+// vehicle, or the vehicle has braked or turned. Where it can be is bounded all the same.
+void PriorityPerception::CountMisfits(PriorityVehicle& vehicle, bool fits, bool place_fits,
+                                      Timestamp stamp) {
+  vehicle.misfits_in_a_row = fits ? 0 : vehicle.misfits_in_a_row + 1;
+  if (vehicle.misfits_in_a_row < settings_->priority.bridge.max_misfits || !place_fits) return;
+  vehicle.filter.DoubtVelocity();
+  vehicle.misfits_in_a_row = 0;
+  if (++vehicle.velocity_doubts > kMostVelocityDoubts) EndVehicle(vehicle, stamp);
+}
+
+void PriorityPerception::KeepWithinReach(Link& link, PriorityVehicle& vehicle, Timestamp stamp) {
+  const Eigen::Vector2d p_O = vehicle.filter.mean().head<2>();
+  if (vehicle.CanReach(p_O, stamp, settings_->priority.bridge)) return;
+  if (link.breaks == 0) return EndVehicle(vehicle, stamp);
+  link.trust.OnFinding(stamp,
+                       {"out_of_reach", Verdict::kWithdraw, "distance_m",
+                        (p_O - vehicle.coast.state().mean.head<2>()).norm(), 0.0},
+                       MayAccuse(stamp));
 }
 
 void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
@@ -191,7 +216,6 @@ void PriorityPerception::TryValidate(Link& link, const ClaimInOdometry& here) {
            .min_margin = config.safe.min_margin,
            .is_assigned = pair->is_assigned,
            .are_sensors_sure = sensed->is_sure && is_seen,
-           .is_accuracy_poor = link.is_accuracy_poor,
            .is_ego_gnss_suspect = alignment_.is_suspect()},
           config.trust)) {
     return;

@@ -73,30 +73,39 @@ void PriorityPerception::OnClaim(const Claim& claim, const EgoState& ego, Output
   const ClaimInOdometry here = alignment_.ToOdometry(claim, claim.received);
   if (config.association == AssociationMode::kPaper) return paper_.OnClaim(here, config.paper);
 
+  // Who says itself that it is lost tells its motion, no place.
+  const bool has_place = !claim.accuracy_is_poor;
+  if (!has_place && FindLink(claim.sender) == nullptr) return;
   Link* link = FollowSender(claim, here, ego);
   if (link == nullptr) return;
   PriorityVehicle* vehicle = VehicleOf(link->sender);
-  if (IsSomebodyElses(*link, vehicle, here)) {
+  if (has_place && IsSomebodyElses(*link, vehicle, here)) {
     return outputs.Refuse(Reason::kBsmContradicted, claim.received);
   }
   JudgeMessages(*link, vehicle, claim, here);
-  ObservePairs(*link, here);
-  if (vehicle == nullptr) vehicle = Inherit(*link, here, outputs);
-  link = FindLink(claim.sender);  // Inherit may have moved it.
-  CompareWithSensors(*link, vehicle, here);
-  if (vehicle == nullptr) {
-    TryValidate(*link, here);
-  } else if (vehicle->id != 0) {  // Not torn from its LOCAL track just now.
-    UseClaim(*link, *vehicle, here);
+  if (has_place) {
+    ObservePairs(*link, here);
+    if (vehicle == nullptr) vehicle = Inherit(*link, here, outputs);
+    link = FindLink(claim.sender);  // Inherit may have moved it.
+    CompareWithSensors(*link, vehicle, here);
+    if (vehicle == nullptr) {
+      TryValidate(*link, here);
+    } else if (vehicle->id != 0) {  // Not torn from its LOCAL track just now.
+      UseClaim(*link, *vehicle, here);
+    }
+  } else if (vehicle != nullptr) {
+    UseMotion(*link, *vehicle, here);
   }
-  link->last = here;
-  link->has_last = true;
+  if (has_place) {
+    link->last = here;
+    link->has_last = true;
+  }
   if (link->trust.has_penalty() || link->place.has_doubt()) {
     tombstones_.Set({.sender = link->sender,
                      .certificate = link->certificate,
-                     .last = here.stamp,
-                     .p_O = here.p_O,
-                     .v_O = here.velocity_O(),
+                     .last = link->last.stamp,
+                     .p_O = link->last.p_O,
+                     .v_O = link->last.velocity_O(),
                      .penalty = link->trust.penalty(),
                      .place = link->place});
   } else {

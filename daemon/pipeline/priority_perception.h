@@ -92,9 +92,8 @@ class PriorityPerception {
     SenderId sender = 0;
     CertificateDigest certificate{};
     SenderTrust trust;
-    ClaimInOdometry last;
+    ClaimInOdometry last;  // Of those with a place of use.
     bool has_last = false;
-    bool is_accuracy_poor = false;
     std::optional<double> length_m;  // As claimed.
     std::optional<double> width_m;
     ClaimedPlace place;
@@ -193,6 +192,9 @@ class PriorityPerception {
   PriorityVehicle* Inherit(Link& link, const ClaimInOdometry& here, Outputs& outputs);
   void CompareWithSensors(Link& link, PriorityVehicle* vehicle, const ClaimInOdometry& here);
   void UseClaim(Link& link, PriorityVehicle& vehicle, const ClaimInOdometry& here);
+  void UseMotion(Link& link, PriorityVehicle& vehicle, const ClaimInOdometry& here);
+  void CountMisfits(PriorityVehicle& vehicle, bool fits, bool place_fits, Timestamp stamp);
+  void KeepWithinReach(Link& link, PriorityVehicle& vehicle, Timestamp stamp);
   void TryValidate(Link& link, const ClaimInOdometry& here);
 
   void EndVehicle(PriorityVehicle& vehicle, Timestamp stamp);

@@ -55,7 +55,6 @@ PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
   link->length_m = claim.length_m;
   link->width_m = claim.width_m;
   link->certificate = claim.certificate;
-  link->is_accuracy_poor = claim.accuracy_is_poor;
   if (claim.has_elevation) link->height_m = Smoothed(link->height_m, claim.height_m);
   return link;
 }

@@ -136,16 +136,9 @@ bool PriorityFilter::Update(const Linearized& measurement) {
 }
 
 ClaimFit PriorityFilter::Update(const ClaimInOdometry& claim, const PriorityFilterConfig& config) {
+  FaceAs(claim);
   ClaimFit fit;
-  const double as_is = std::abs(mean_[kSpeed] - claim.speed_mps);
-  const double turned = std::abs(mean_[kSpeed] + claim.speed_mps);
-  const bool is_opposite =
-      claim.has_course && std::abs(AngleDifference(claim.yaw_rad, mean_[kYaw])) > 0.5 * kPi;
-  if (is_opposite && (turned < as_is || std::abs(mean_[kSpeed]) < kLowSpeed_mps)) {
-    TurnRound(mean_, covariance_);
-  }
-
-  // 1. Position with bias and frame rotation about p_ref.
+  // Position with bias and frame rotation about p_ref.
   const Eigen::Vector2d lever = mean_.head<2>() - p_ref_O_;
   const double theta = mean_[kFrameYaw];
   const Eigen::Vector2d turn(-lever.y(), lever.x());
@@ -160,14 +153,36 @@ ClaimFit PriorityFilter::Update(const ClaimInOdometry& claim, const PriorityFilt
   if (!(fit.position_nis <= config.position_gate)) return fit;
   if (!JosephUpdate(y, H, R, mean_, covariance_)) return fit;
   fit.is_used = true;
+  fit.is_velocity_used = TakeMotion(claim, config);
 
-  // 2. Velocity.
+  const double size_m = bias().norm();
+  if (size_m > config.max_bias_m) mean_.segment<2>(kBiasX) *= config.max_bias_m / size_m;
+  return fit;
+}
+
+bool PriorityFilter::UpdateMotion(const ClaimInOdometry& claim,
+                                  const PriorityFilterConfig& config) {
+  FaceAs(claim);
+  return TakeMotion(claim, config);
+}
+
+void PriorityFilter::FaceAs(const ClaimInOdometry& claim) {
+  const double as_is = std::abs(mean_[kSpeed] - claim.speed_mps);
+  const double turned = std::abs(mean_[kSpeed] + claim.speed_mps);
+  const bool is_opposite =
+      claim.has_course && std::abs(AngleDifference(claim.yaw_rad, mean_[kYaw])) > 0.5 * kPi;
+  if (is_opposite && (turned < as_is || std::abs(mean_[kSpeed]) < kLowSpeed_mps)) {
+    TurnRound(mean_, covariance_);
+  }
+}
+
+bool PriorityFilter::TakeMotion(const ClaimInOdometry& claim, const PriorityFilterConfig& config) {
   Rows_t<1> row = Rows_t<1>::Zero();
   row[kSpeed] = 1.0;
   row[kSpeedError] = 1.0;
-  fit.is_velocity_used = UpdateRow(claim.speed_mps - mean_[kSpeed] - mean_[kSpeedError], row,
-                                   std::max(config.speed_sigma_mps, claim.speed_sigma_mps),
-                                   config.row_gate, mean_, covariance_);
+  bool is_used = UpdateRow(claim.speed_mps - mean_[kSpeed] - mean_[kSpeedError], row,
+                           std::max(config.speed_sigma_mps, claim.speed_sigma_mps), config.row_gate,
+                           mean_, covariance_);
   if (claim.has_course) {
     row.setZero();
     row[kYaw] = 1.0;
@@ -177,11 +192,12 @@ ClaimFit PriorityFilter::Update(const ClaimInOdometry& claim, const PriorityFilt
     if (std::abs(claim.speed_mps) < kLowSpeed_mps) {
       sigma_rad = std::max(sigma_rad, kLowSpeedYawSigma_rad);
     }
-    const double y_yaw = AngleDifference(claim.yaw_rad - mean_[kYawError] - theta, mean_[kYaw]);
-    fit.is_velocity_used &= UpdateRow(y_yaw, row, sigma_rad, config.row_gate, mean_, covariance_);
+    const double y_yaw =
+        AngleDifference(claim.yaw_rad - mean_[kYawError] - mean_[kFrameYaw], mean_[kYaw]);
+    is_used &= UpdateRow(y_yaw, row, sigma_rad, config.row_gate, mean_, covariance_);
   }
 
-  // 3. What the vehicle says of its manoeuvre; only where it fits.
+  // What the vehicle says of its manoeuvre; only where it fits.
   row.setZero();
   row[kYawRate] = 1.0;
   UpdateRow(claim.yaw_rate_radps - mean_[kYawRate], row, config.yaw_rate_sigma_radps,
@@ -190,10 +206,7 @@ ClaimFit PriorityFilter::Update(const ClaimInOdometry& claim, const PriorityFilt
   row[kAccel] = 1.0;
   UpdateRow(claim.accel_mps2 - mean_[kAccel], row, config.accel_sigma_mps2, config.row_gate, mean_,
             covariance_);
-
-  const double size_m = bias().norm();
-  if (size_m > config.max_bias_m) mean_.segment<2>(kBiasX) *= config.max_bias_m / size_m;
-  return fit;
+  return is_used;
 }
 
 Eigen::Matrix2d PriorityFilter::LackOf(const Eigen::Matrix2d& least) const {

@@ -89,6 +89,10 @@ class PriorityFilter {
   /// A claim valid at stamp().
   ClaimFit Update(const ClaimInOdometry& claim, const PriorityFilterConfig& config);
 
+  /// Speed, direction and manoeuvre of a claim whose place is of no use.
+  /// @return whether they fitted.
+  bool UpdateMotion(const ClaimInOdometry& claim, const PriorityFilterConfig& config);
+
   /// What the position's covariance lacks to be at least `least`: the positive part of least - P.
   [[nodiscard]] Eigen::Matrix2d LackOf(const Eigen::Matrix2d& least) const;
   /// Makes the position at least as uncertain as `least`.
@@ -118,6 +122,10 @@ class PriorityFilter {
   [[nodiscard]] const Matrix& covariance() const { return covariance_; }
 
  private:
+  // Turns the state round where the claim tells the same motion with the other end as the front.
+  void FaceAs(const ClaimInOdometry& claim);
+  bool TakeMotion(const ClaimInOdometry& claim, const PriorityFilterConfig& config);
+
   Timestamp stamp_{};
   Vector mean_ = Vector::Zero();
   Matrix covariance_ = Matrix::Identity();

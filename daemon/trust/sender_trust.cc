@@ -111,7 +111,7 @@ void SenderTrust::OnFinding(Timestamp stamp, const Finding& finding, bool may_ac
 
 bool SenderTrust::TryValidate(const ValidationEvidence& evidence, const TrustConfig& config) {
   if (state_ != TrustState::kCandidate || evidence.is_ego_gnss_suspect) return false;
-  if (consistent_run_ < config.candidate_messages || evidence.is_accuracy_poor) return false;
+  if (consistent_run_ < config.candidate_messages) return false;
   const bool is_known = released_ && ToSeconds(evidence.stamp - *released_) <= config.again_s;
   const auto has_seen = [&](int observations, double observed_s) {
     return evidence.co_observations >= observations && evidence.span_s >= observed_s;

@@ -33,7 +33,6 @@ struct ValidationEvidence {
   double min_margin = 4.0;
   bool is_assigned = false;          ///< Chosen one-to-one.
   bool are_sensors_sure = false;     ///< Radar and camera, or one of them long enough.
-  bool is_accuracy_poor = false;     ///< Reported worse than 5 m.
   bool is_ego_gnss_suspect = false;  ///< Our own place is in doubt: nobody is validated.
 };
 

@@ -15,7 +15,6 @@ constexpr double kMaxAccel_mps2 = 12.0;
 constexpr double kMaxLateralAccel_mps2 = 9.0;
 constexpr double kMaxYawRate_radps = 1.5;
 constexpr double kMaxTurning_mps2 = 12.0;
-constexpr double kPoorAccuracy_m = 5.0;
 constexpr double kEchoSpeed_mps = 1.0;
 constexpr double kEchoCourse_rad = FromDegrees(15.0);
 constexpr double kEchoCourseSpeed_mps = 2.0;  // Below, courses say little.
@@ -91,7 +90,7 @@ Claim ToClaim(const Bsm& bsm, double age_s, const IntakeConfig& config) {
           ? std::clamp(*bsm.semi_major_m, config.min_position_sigma_m,
                        std::max(config.min_position_sigma_m, config.max_position_sigma_m))
           : config.unknown_position_sigma_m;
-  claim.accuracy_is_poor = bsm.semi_major_m.value_or(0.0) > kPoorAccuracy_m;
+  claim.accuracy_is_poor = bsm.semi_major_m.value_or(0.0) > config.max_position_sigma_m;
   claim.length_m = bsm.length_m;
   claim.width_m = bsm.width_m;
   return claim;

@@ -21,7 +21,6 @@ constexpr double kIndependent_hz = 4.0;    // GNSS errors of places closer in ti
 constexpr double kUnseenAccel_mps2 = 1.0;  // What speed and course may do between two messages.
 constexpr double kReverse_rad = FromDegrees(150.0);
 constexpr double kReverseSpeed_mps = 6.0;
-constexpr double kPoor = 2.5;        // Ways of units that say that they are lost are longer.
 constexpr double kAccusation = 2.0;  // Times the limit.
 
 // Sums over points (t, r); r is a vector.
@@ -161,7 +160,6 @@ std::optional<Finding> PathCheck::Judge(const PathStep& step, const MessageCheck
   double between = 0.0;
   std::size_t n = 1;
   std::size_t window = 0;
-  const double least_m = (step.is_poor ? kPoor : 1.0) * config.path_min_m;
   Excess speed;
   Excess course;
   for (std::size_t back = 0; back < count_ && window < kWindows_s.size(); ++back) {
@@ -176,7 +174,7 @@ std::optional<Finding> PathCheck::Judge(const PathStep& step, const MessageCheck
     sums[n].Add(t, r);
     ++n;
     const double way = std::sqrt(std::max(claimed.squaredNorm(), (claimed - r).squaredNorm()));
-    if (-t < kWindows_s[window] || n < kFewest || way < least_m) continue;
+    if (-t < kWindows_s[window] || n < kFewest || way < config.path_min_m) continue;
     while (window < kWindows_s.size() && -t >= kWindows_s[window]) ++window;
 
     const auto compare = [&](const Line& line) {

@@ -17,7 +17,6 @@ struct PathStep {
   Eigen::Vector2d moved_m = Eigen::Vector2d::Zero();    ///< Between the places, east-north.
   Eigen::Vector2d claimed_m = Eigen::Vector2d::Zero();  ///< Way that the claimed motion would make.
   double sigma_m = 1.5;  ///< Accuracy it is believed to have; bounds what scatter may excuse.
-  bool is_poor = false;  ///< Says itself that it is worse than 5 m: only ways of 25 m are judged.
 };
 
 /// The way of a vehicle that goes from one velocity to another in `dt_s`: the chord of the arc

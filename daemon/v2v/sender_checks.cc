@@ -32,11 +32,14 @@ std::optional<Finding> SenderChecks::Judge(const Claim& claim, const SenderTrack
   const double dt_s = last_ ? ToSeconds(claim.received - last_->received) : 0.0;
   implausible_.OnMessage(false);
   add(implausible_.Judge(config));
-  auto motion = JudgeMotion(claim, track, config);
-  // A unit that says itself that it is lost does not lie about its place; it is of no use.
-  if (motion && claim.accuracy_is_poor) motion->severity = Verdict::kWithdraw;
-  add(motion);
-  add(innovation_.Judge(track.latest_nis, track.nis_freedom, dt_s, config));
+  if (claim.accuracy_is_poor) {
+    // A unit that says itself that it is lost does not lie about its place.
+    path_.Restart();
+    last_path_.reset();
+  } else {
+    add(JudgeMotion(claim, track, config));
+    add(innovation_.Judge(track.latest_nis, track.nis_freedom, dt_s, config));
+  }
   add(size_.Judge(claim.length_m, claim.width_m, config));
   add(delay_.Judge(claim.age_s, config));
   return gravest;
@@ -81,7 +84,7 @@ std::optional<Finding> SenderChecks::JudgeMotion(const Claim& claim, const Sende
     path = path_.Judge(
         {dt_s, here.way_m - last_path_->way_m,
          ClaimedWay(last_path_->yaw_rad, last_path_->speed_mps, here.yaw_rad, here.speed_mps, dt_s),
-         claim.position_sigma_m, claim.accuracy_is_poor},
+         claim.position_sigma_m},
         config);
   } else {
     path_.Restart();

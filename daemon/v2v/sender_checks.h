@@ -33,7 +33,7 @@ class SenderChecks {
   /// @return the gravest finding; of equals the first of: contested_core, message_rate,
   ///   implausible, position_jump or two_places, implausible_motion, speed_against_path or
   ///   course_against_path, own_motion, size_change, late_messages. Places and ways of a sender
-  ///   that tells an accuracy worse than 5 m accuse nobody (C16).
+  ///   whose accuracy is poor are not judged (C16).
   std::optional<Finding> Judge(const Claim& claim, const SenderTrack& track,
                                const MessageCheckConfig& config);
 

@@ -146,8 +146,9 @@ class Scene {
 
   void Say(SenderId sender, const Eigen::Vector2d& p, double yaw_rad, double speed_mps,
            double noise_m = 0.5, double height_m = 60.0,
-           const std::optional<Finding>& finding = std::nullopt) {
+           const std::optional<Finding>& finding = std::nullopt, bool is_lost = false) {
     Claim claim;
+    claim.accuracy_is_poor = is_lost;
     claim.finding = finding;
     claim.sender = sender;
     claim.received = now;
@@ -168,6 +169,14 @@ class Scene {
   void Honest(SenderId sender, const Eigen::Vector2d& bias = {1.0, -0.8}) {
     if (frames % 2 == 0) {
       Say(sender, cars[0].p + bias, cars[0].yaw_rad, cars[0].speed_mps);
+    }
+  }
+
+  // Claims of car 0, as far off, from a sender that says itself that its place is worth nothing.
+  void Lost(SenderId sender, const Eigen::Vector2d& error) {
+    if (frames % 2 == 0) {
+      Say(sender, cars[0].p + error, cars[0].yaw_rad, cars[0].speed_mps, 0.5, 60.0, std::nullopt,
+          true);
     }
   }
 

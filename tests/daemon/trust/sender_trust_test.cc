@@ -92,7 +92,6 @@ TEST(SenderTrust, EveryPieceOfEvidenceIsNeeded) {
                           [](ValidationEvidence& e) { e.margin = 3.9; },
                           [](ValidationEvidence& e) { e.is_assigned = false; },
                           [](ValidationEvidence& e) { e.are_sensors_sure = false; },
-                          [](ValidationEvidence& e) { e.is_accuracy_poor = true; },
                           [](ValidationEvidence& e) { e.is_ego_gnss_suspect = true; }};
   for (const Spoil spoil : spoils) {
     SenderTrust trust = Candidate();

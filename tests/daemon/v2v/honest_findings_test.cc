@@ -68,6 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
         Condition{"plain", {}, 0.002}, Condition{"bias 3 m", {.bias_sigma_m = 3.0}, 0.002},
         Condition{"white 1 m", {.white_m = 1.0}, 0.002},
         Condition{"bursts of 8 m", {.burst_m = 8.0}, 0.10},
+        Condition{"... reported", {.burst_m = 8.0, .is_burst_reported = true}, 0.002},
         Condition{"loss 54 %", {.latency_spread_s = 0.27, .stale_s = 0.15, .loss = 0.54}, 0.002},
         Condition{"loss 77 %, gaps",
                   {.latency_spread_s = 0.27, .stale_s = 0.15, .loss = 0.77, .gap_s = 7.0},

@@ -123,7 +123,7 @@ std::vector<Bsm> HonestMessages(const HonestErrors& errors, double duration_s, s
     const bool is_reverse = now.speed_mps < -0.05;
     if (is_reverse) bsm.transmission = Transmission::kReverse;
     bsm.course_rad = WrapAngle(held_course_rad + (is_reverse ? kPi : 0.0));
-    bsm.semi_major_m = errors.accuracy_m;
+    bsm.semi_major_m = std::hypot(errors.accuracy_m, errors.is_burst_reported ? burst : 0.0);
     const bool is_in_gap = in_half_minute > 5.0 && in_half_minute < 5.0 + errors.gap_s;
     if (!random.Bernoulli(errors.loss) && !is_in_gap) messages.push_back(bsm);
   };

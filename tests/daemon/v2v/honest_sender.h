@@ -23,8 +23,9 @@ struct HonestErrors {
   double pair_share = 0.0;        ///< Messages followed by another 50 ms later.
   double speed_sigma_mps = 0.28;  ///< SAE J2945/1, 1 sigma; half of it lasting.
   double course_sigma_deg = 2.0;
-  double step_m = 0.0;   ///< GNSS re-converges by this every 30 s.
-  double burst_m = 0.0;  ///< Off by this for 5 s of every 30 s.
+  double step_m = 0.0;             ///< GNSS re-converges by this every 30 s.
+  double burst_m = 0.0;            ///< Off by this for 5 s of every 30 s.
+  bool is_burst_reported = false;  ///< The reported accuracy follows.
   bool is_moving = true;
 };
 
