@@ -12,7 +12,7 @@ struct MessageCheckConfig {
   double over_rate_s = 2.0;        ///< C4: over the sender's budget for so long.
   double accuse_rate_hz = 40.0;    ///< C4: more than this for a whole second is no accident.
   double own_motion_nis = 12.0;    ///< C5: mean NIS of ten messages (4 where consistent).
-  double jump_m = 10.0;            ///< C5: displacement that the claimed motion does not explain.
+  double jump_m = 8.0;             ///< C5: displacement that the claimed motion does not explain.
   double jump_speed_mps = 70.0;    ///< C5: and never more than this times the time between.
   int accuse_jumps = 3;            ///< C5: of five messages.
   double path_speed_mps = 0.8;     ///< C6: claimed speed against the way made good: this ...

@@ -13,6 +13,8 @@ constexpr double kMostNis = 40.0;
 constexpr double kUnseen_s = 0.25;
 constexpr double kMemory_s = 2.0;  // A place left longer ago is left for good.
 constexpr std::uint32_t kLastFive = 0b11111;
+constexpr double kAccusingJump =
+    1.25;  // Times the limit; raw fixes among high buildings jump, too.
 constexpr double kStepNoise_mps = 2.0;
 constexpr double kStepSpan_s = 1.0;
 
@@ -69,7 +71,7 @@ std::optional<Finding> JumpCheck::Judge(const PlaceAndVelocity& here,
   if (is_back) {
     return Finding{"two_places", Verdict::kWithdraw, "displacement_m", distance_m, limit_m};
   }
-  jumps_ |= 1U;
+  if (distance_m > kAccusingJump * limit_m) jumps_ |= 1U;
   const bool accuses = std::popcount(jumps_) >= config.accuse_jumps;
   return Finding{"position_jump", accuses ? Verdict::kAccuse : Verdict::kWithdraw, "displacement_m",
                  distance_m, limit_m};

@@ -42,7 +42,8 @@ struct PlaceAndVelocity {
 ///
 ///     unexplained = |p - (p_last + (v_last + v) / 2 dt)|
 ///     limit       = min(max(jump_m, jump_speed dt), jump_m + max_accel / 2 dt^2)
-///     position_jump, WITHDRAW; ACCUSE where accuse_jumps of the last five messages jumped
+///     position_jump, WITHDRAW; ACCUSE where accuse_jumps of the last five messages jumped by 1.25
+///       times the limit
 ///     two_places, WITHDRAW: the message goes on where the sender was before it last jumped: two
 ///       speak under one identity, and which of them lies is not known
 class JumpCheck {
