@@ -16,6 +16,8 @@ constexpr double kMaxFrameAge_s = 0.5;  // Older tracks are not compared with an
 constexpr double kPairReach_m = 20.0;   // No claim, however poor, starts a pair from farther away.
 constexpr double kUnknownAccel_mps2 = 4.0;
 constexpr double kOwnMotionFloor_m = 2.0;
+constexpr double kMostAccel_mps2 = 12.0;
+constexpr double kSpeedFloor_mps = 2.0;
 constexpr int kBreakMemory = 30;  // Messages for which a break of the own motion is held against.
 constexpr int kMostVelocityDoubts = 2;
 constexpr double kLongestLost_s = 10.0;  // A sender that does not know its place says nothing then.
@@ -52,8 +54,10 @@ void PriorityPerception::JudgeMessages(Link& link, const PriorityVehicle* vehicl
     const Eigen::Vector2d expected =
         last.p_O + speed_mps * dt_s * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
     const double sigma_m = std::sqrt(0.5 * (last.noise.trace() + here.noise.trace()));
-    is_consistent = (here.p_O - expected).norm() <=
-                    kOwnMotionFloor_m + 3.0 * sigma_m + 0.5 * kUnknownAccel_mps2 * dt_s * dt_s;
+    is_consistent =
+        (here.p_O - expected).norm() <=
+            kOwnMotionFloor_m + 3.0 * sigma_m + 0.5 * kUnknownAccel_mps2 * dt_s * dt_s &&
+        std::abs(here.speed_mps - last.speed_mps) <= kSpeedFloor_mps + kMostAccel_mps2 * dt_s;
   }
   link.breaks = is_consistent ? std::max(0, link.breaks - 1) : kBreakMemory;
   link.trust.OnMessage(here.stamp, is_consistent, config);

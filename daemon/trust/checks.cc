@@ -55,15 +55,18 @@ void ResidualHistory::LookForTear(const CoObservation& observation, const TrustC
     Eigen::Vector2d step = observation.residual_O - last_residual_;
     if (observation.velocity_residual_O) step -= dt_s * *observation.velocity_residual_O;
     unexplained_ = std::exp(-dt_s / config.mean_time_s) * unexplained_ + step;
-    is_torn_ = unexplained_.norm() > limit_m;
+    torn_m_ = unexplained_.norm();
+    is_torn_ = torn_m_ > limit_m;
   } else {
     // After a time unseen the vehicle has come back, or another has been taken for it.
-    is_torn_ = has_any_ && (observation.residual_O - mean_).norm() > limit_m;
+    torn_m_ = (observation.residual_O - mean_).norm();
+    is_torn_ = has_any_ && torn_m_ > limit_m;
     unexplained_.setZero();
   }
   // While but a part is seen the mean rests. A part may mislead by the size of a vehicle, no more.
-  if (observation.is_partial && has_any_) {
-    is_torn_ |= (observation.residual_O - mean_).norm() > limit_m + config.torn_m;
+  if (observation.is_partial && has_any_ && !is_torn_) {
+    torn_m_ = (observation.residual_O - mean_).norm();
+    is_torn_ = torn_m_ > limit_m + config.torn_m;
   }
   last_step_ = observation.stamp;
   last_residual_ = observation.residual_O;

@@ -73,7 +73,7 @@ class ResidualHistory {
   /// The residual has lately gone where neither motion took it: one of the two has jumped, within a
   /// second and by more than torn_m (and 0.05 s of speed, and twice the sensors' own sigma).
   [[nodiscard]] bool is_torn() const { return is_torn_; }
-  [[nodiscard]] double unexplained_m() const { return unexplained_.norm(); }
+  [[nodiscard]] double torn_m() const { return torn_m_; }  ///< By how much.
   /// Two-second mean 10 s ago, or the first two seconds where there are not yet 10.
   [[nodiscard]] std::optional<Eigen::Vector2d> reference_O() const;
   /// The track's speed then; 0 where there is no reference.
@@ -87,6 +87,7 @@ class ResidualHistory {
   bool has_any_ = false;
   bool has_yaw_ = false;
   bool is_torn_ = false;
+  double torn_m_ = 0.0;
   Timestamp last_{};
   std::optional<Timestamp> last_step_;
   Eigen::Vector2d last_residual_ = Eigen::Vector2d::Zero();

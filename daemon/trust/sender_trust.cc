@@ -53,8 +53,8 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
   if (track_motion_.Observe(observation.stamp, track_O)) history_.Restart();
   history_.Add(observation, config);
   if (history_.is_torn() && !observation.is_own_motion_whole && is_relied_on()) {
-    Suspect(observation.stamp, {"residual_jump", Verdict::kWithdraw, "jump_m",
-                                history_.unexplained_m(), config.torn_m});
+    Suspect(observation.stamp,
+            {"residual_jump", Verdict::kWithdraw, "jump_m", history_.torn_m(), config.torn_m});
     return true;
   }
   if (history_.is_torn() && observation.is_own_motion_whole) {

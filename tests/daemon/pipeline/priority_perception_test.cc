@@ -106,6 +106,22 @@ TEST(PriorityPerception, ATrackThatAPartHasTurnedBlamesNobodyWhileItCoasts) {
   EXPECT_TRUE(scene.outputs.reports.empty());
 }
 
+// It says that it stands, from one message to the next. That the sensors have but a part of the car
+// that drives on excuses a LOCAL track that strays, not a sender that stops as no car can.
+TEST(PriorityPerception, WhoStopsAsNoCarCanIsBlamedBesideATrackInDoubt) {
+  Scene scene = Validated(5);
+  scene.cars[0].is_part = true;
+  const Eigen::Vector2d frozen = scene.cars[0].p;
+  scene.Run(3.0, [&] {
+    if (scene.frames % 2 == 0) scene.Say(1, frozen, scene.cars[0].yaw_rad, 0.0);
+  });
+  EXPECT_TRUE(scene.Priority().empty());
+  ASSERT_FALSE(scene.outputs.reports.empty());
+  EXPECT_EQ(scene.outputs.reports[0].verdict, Verdict::kWithdraw);
+  EXPECT_GT(scene.outputs.reports[0].evidence[0].value, scene.outputs.reports[0].evidence[1].value);
+  EXPECT_EQ(scene.perception.TrustOf(1), TrustState::kSuspect);
+}
+
 TEST(PriorityPerception, EgoJumpMovesNoValidatedVehicle) {
   Scene scene = Validated(10);
   const std::uint64_t id = scene.Priority()[0].track.id;
