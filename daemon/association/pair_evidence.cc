@@ -12,6 +12,7 @@ namespace {
 
 // One message may say so much and no more: a single outlier must not undo a long agreement.
 constexpr double kMaxDistance = 25.0;
+constexpr double kLatestNis = 9.21;  // Chi-square, 2 dof, 0.99.
 constexpr double kMaxGain = 4.0;
 constexpr double kMaxLoss = -8.0;
 constexpr int kMeanWindow = 20;
@@ -57,14 +58,12 @@ void PairEvidence::Add(const PairObservation& observation, const AssociationConf
   const Eigen::Matrix2d S = bias_covariance_ + observation.sensed + observation.noise;
   const Eigen::Matrix2d S_inverse = S.inverse();
   const double nis = nu.dot(S_inverse * nu);
-  if (nis <= kMaxDistance) {
+  latest_nis_ = nis;
+  if (nis <= kMaxDistance) {  // Beyond, nothing is learnt: a jump is no bias.
     const Eigen::Matrix2d K = bias_covariance_ * S_inverse;
     bias_ += K * nu;
     const Eigen::Matrix2d reduced = bias_covariance_ - K * S * K.transpose();
     bias_covariance_ = 0.5 * (reduced + reduced.transpose());
-    outlier_run_ = 0;
-  } else {
-    ++outlier_run_;  // Not learnt from: a jump is no bias.
   }
 
   const double weight = 1.0 / std::min(observations_, kMeanWindow);
@@ -88,7 +87,7 @@ void PairEvidence::Add(const PairObservation& observation, const AssociationConf
 
 bool PairEvidence::is_nis_consistent() const {
   const double dof = 2.0 * std::min(observations_, kMeanWindow);
-  return mean_nis_ <= UpperChiSquare(dof) / dof * 2.0;
+  return latest_nis_ <= kLatestNis && mean_nis_ <= UpperChiSquare(dof) / dof * 2.0;
 }
 
 bool PairEvidence::is_speed_consistent(const AssociationConfig& config) const {

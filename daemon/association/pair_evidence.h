@@ -60,8 +60,9 @@ class PairEvidence {
   [[nodiscard]] Timestamp last() const { return last_; }
   [[nodiscard]] double span_s() const { return ToSeconds(last_ - first_); }
   [[nodiscard]] double mean_nis() const { return mean_nis_; }
-  /// Mean NIS (2 dof) below the upper end of its 99 % band. A low NIS is a sender better than it
-  /// says, which is no fault.
+  /// Mean NIS (2 dof) below the upper end of its 99 % band, and the latest within the 99 % gate:
+  /// nobody is validated by the message that shows that the track has gone elsewhere. A low NIS is
+  /// a sender better than it says, which is no fault.
   [[nodiscard]] bool is_nis_consistent() const;
   /// Mean of claimed minus sensed speed over the last 20 messages within max_speed_mps and the
   /// mean sigma. A car that passes in the next lane may pair for seconds with a bias that moves
@@ -69,17 +70,16 @@ class PairEvidence {
   [[nodiscard]] bool is_speed_consistent(const AssociationConfig& config) const;
   [[nodiscard]] const Eigen::Vector2d& bias() const { return bias_; }
   [[nodiscard]] const Eigen::Matrix2d& bias_covariance() const { return bias_covariance_; }
-  [[nodiscard]] int outliers_in_a_row() const { return outlier_run_; }
 
  private:
   Timestamp first_{};
   Timestamp last_{};
   int observations_ = 0;
-  int outlier_run_ = 0;
   double fading_ = 0.0;
   double level_ = 0.0;
   Eigen::Matrix2d level_information_ = Eigen::Matrix2d::Identity();  // (B0 + stale)^-1
   double mean_nis_ = 0.0;
+  double latest_nis_ = 0.0;
   double mean_speed_ = 0.0;  // Of the residual; its sigma beside.
   double mean_speed_sigma_ = 0.0;
   Eigen::Vector2d bias_ = Eigen::Vector2d::Zero();

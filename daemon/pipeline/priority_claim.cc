@@ -20,6 +20,7 @@ constexpr double kMostAccel_mps2 = 12.0;
 constexpr double kSpeedFloor_mps = 2.0;
 constexpr int kBreakMemory = 30;  // Messages for which a break of the own motion is held against.
 constexpr int kMostVelocityDoubts = 2;
+constexpr double kSeldom_s = 0.5;
 constexpr double kLongestLost_s = 10.0;  // A sender that does not know its place says nothing then.
 
 // Findings that a second device under the same id brings, whoever of the two lies.
@@ -145,7 +146,7 @@ void PriorityPerception::UseClaim(Link& link, PriorityVehicle& vehicle,
       vehicle.co_observed_s += std::clamp(since_last_s, 0.0, config.bridge.max_gap_s);
     return;
   }
-  CountMisfits(vehicle, fit.is_used && fit.is_velocity_used, fit.is_used, here.stamp);
+  CountMisfits(vehicle, fit.is_used && fit.is_velocity_used, fit.is_used, since_last_s, here.stamp);
   if (vehicle.id == 0) return;
   if (vehicle.misfits_in_a_row < config.bridge.max_misfits) {
     return KeepWithinReach(link, vehicle, here.stamp);
@@ -168,19 +169,23 @@ void PriorityPerception::UseMotion(Link& link, PriorityVehicle& vehicle,
     return EndVehicle(vehicle, here.stamp);
   }
   vehicle.PredictTo(here.stamp, config.filter);
+  const double since_last_s = ToSeconds(here.stamp - vehicle.last_v2v);
   const bool is_used = vehicle.filter.UpdateMotion(here, config.filter);
   vehicle.last_v2v = here.stamp;
   if (vehicle.is_supported) return;
-  CountMisfits(vehicle, is_used, true, here.stamp);
+  CountMisfits(vehicle, is_used, true, since_last_s, here.stamp);
   if (vehicle.id != 0) KeepWithinReach(link, vehicle, here.stamp);
 }
 
 // Where the place fits and the motion does not, the motion was last measured by a part of the
-// vehicle, or the vehicle has braked or turned. Where it can be is bounded all the same.
+// vehicle, or the vehicle has braked or turned. Where it can be is bounded all the same. Who speaks
+// seldom is carried far in a false direction meanwhile: there one message is enough.
 void PriorityPerception::CountMisfits(PriorityVehicle& vehicle, bool fits, bool place_fits,
-                                      Timestamp stamp) {
-  vehicle.misfits_in_a_row = fits ? 0 : vehicle.misfits_in_a_row + 1;
-  if (vehicle.misfits_in_a_row < settings_->priority.bridge.max_misfits || !place_fits) return;
+                                      double since_last_s, Timestamp stamp) {
+  const int most = settings_->priority.bridge.max_misfits;
+  const int more = since_last_s > kSeldom_s ? most : 1;
+  vehicle.misfits_in_a_row = fits ? 0 : vehicle.misfits_in_a_row + more;
+  if (vehicle.misfits_in_a_row < most || !place_fits) return;
   vehicle.filter.DoubtVelocity();
   vehicle.misfits_in_a_row = 0;
   if (++vehicle.velocity_doubts > kMostVelocityDoubts) EndVehicle(vehicle, stamp);

@@ -193,7 +193,8 @@ class PriorityPerception {
   void CompareWithSensors(Link& link, PriorityVehicle* vehicle, const ClaimInOdometry& here);
   void UseClaim(Link& link, PriorityVehicle& vehicle, const ClaimInOdometry& here);
   void UseMotion(Link& link, PriorityVehicle& vehicle, const ClaimInOdometry& here);
-  void CountMisfits(PriorityVehicle& vehicle, bool fits, bool place_fits, Timestamp stamp);
+  void CountMisfits(PriorityVehicle& vehicle, bool fits, bool place_fits, double since_last_s,
+                    Timestamp stamp);
   void KeepWithinReach(Link& link, PriorityVehicle& vehicle, Timestamp stamp);
   void TryValidate(Link& link, const ClaimInOdometry& here);
 

@@ -37,29 +37,37 @@ double GateDistance(const Eigen::Vector2d& d, const Eigen::Matrix2d& S) {
 }  // namespace
 
 // Its sender has gone on speaking: what comes back must be where it says, its known bias taken off,
-// and move as it says. Another car that comes into view near by is not it.
+// and move as it says; where its last place is old, as the bridge has carried it on. Another car
+// that comes into view near by is not it.
 bool PriorityPerception::IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle,
                                         Timestamp stamp) const {
   const Link* link = FindLink(vehicle.sender);
-  if (link == nullptr || !link->has_last) return true;
+  if (link == nullptr) return true;
   const ClaimInOdometry& claim = link->last;
-  const double age_s = ToSeconds(stamp - claim.stamp);
-  if (std::abs(age_s) > kPatience_s) return true;
-  const Eigen::Vector2d off_O =
-      claim.PlaceAt(stamp) - vehicle.filter.bias() - track.state_O.mean.head<2>();
-  const double yaw_rad = claim.has_course ? claim.yaw_rad : track.state_O.mean[kYaw];
+  const bool is_fresh = link->has_last && std::abs(ToSeconds(stamp - claim.stamp)) <= kPatience_s;
+  const KinematicState carried = vehicle.filter.kinematics();
+  const bool has_course = !is_fresh || claim.has_course;
+  const double speed_mps = is_fresh ? claim.speed_mps : carried.mean[kSpeed];
+  double yaw_rad = is_fresh ? claim.yaw_rad : carried.mean[kYaw];
+  if (!has_course) yaw_rad = track.state_O.mean[kYaw];
+  const Eigen::Vector2d place_O =
+      is_fresh ? Eigen::Vector2d(claim.PlaceAt(stamp) - vehicle.filter.bias())
+               : Eigen::Vector2d(carried.mean.head<2>());
+  const Eigen::Matrix2d noise =
+      is_fresh ? claim.noise : Eigen::Matrix2d(carried.covariance.topLeftCorner<2, 2>());
+  const Eigen::Vector2d off_O = place_O - track.state_O.mean.head<2>();
   const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
   const Eigen::Vector2d left(-ahead.y(), ahead.x());
-  const Eigen::Matrix2d P = claim.noise + track.state_O.covariance.topLeftCorner<2, 2>();
+  const Eigen::Matrix2d P = noise + track.state_O.covariance.topLeftCorner<2, 2>();
   const double along_sigma_m = std::sqrt(ahead.dot(P * ahead));
   const double across_sigma_m = std::sqrt(left.dot(P * left));
   if (std::max(along_sigma_m, across_sigma_m) > kMostDoubt_m) return false;
   if (std::abs(ahead.dot(off_O)) > kClaimedAlong_m + 2.0 * along_sigma_m) return false;
   if (std::abs(left.dot(off_O)) > kClaimedAcross_m + 2.0 * across_sigma_m) return false;
-  if (!claim.has_course) return true;
-  const double yaw_mps = std::sqrt(track.state_O.covariance(kYaw, kYaw)) * claim.speed_mps;
+  if (!has_course) return true;
+  const double yaw_mps = std::sqrt(track.state_O.covariance(kYaw, kYaw)) * speed_mps;
   const double speed_sigma_mps = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
-  return (claim.velocity_O() - track.state_O.velocity()).norm() <=
+  return (speed_mps * ahead - track.state_O.velocity()).norm() <=
          kClaimedSpeed_mps + 2.0 * std::min(std::hypot(speed_sigma_mps, yaw_mps), kMostDoubt_mps);
 }
 

@@ -37,7 +37,19 @@ TEST(PairEvidence, LearnsAnHonestBiasAndStaysConsistent) {
     EXPECT_GT(evidence.score(), 0.0);
     EXPECT_LT((evidence.bias() - bias).norm(), 0.9);  // 1 m / sqrt(60) = 0.13 m per axis, 5 sigma.
   }
-  EXPECT_GE(consistent, 196);  // 99 % band.
+  EXPECT_GE(consistent, 193);  // 99 % band, and 99 % of latest messages.
+}
+
+// After a long agreement the track goes over to a neighbour: the first message says so.
+TEST(PairEvidence, IsNotConsistentAtAMessageThatDoesNotFit) {
+  const AssociationConfig config;
+  PairEvidence evidence(config, std::nullopt, Observation(0.0, {0.5, 0.0}));
+  for (int i = 1; i < 20; ++i) evidence.Add(Observation(1.0 * i, {0.5, 0.0}), config);
+  EXPECT_TRUE(evidence.is_nis_consistent());
+  evidence.Add(Observation(20.0, {0.5, 4.5}), config);
+  EXPECT_FALSE(evidence.is_nis_consistent());
+  evidence.Add(Observation(21.0, {0.5, 0.0}), config);
+  EXPECT_TRUE(evidence.is_nis_consistent());
 }
 
 TEST(PairEvidence, DifferentSpeedEndsTheLikeness) {

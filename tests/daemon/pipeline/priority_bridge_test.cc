@@ -77,6 +77,21 @@ TEST(PriorityBridge, PlaceInClearViewThatIsEmptyEndsTheBridgeWithinASecond) {
   EXPECT_EQ(scene.perception.TrustOf(1), TrustState::kSuspect);
 }
 
+// The last look at a part had it turned, and its sender speaks every 0.8 s: three messages that do
+// not fit would carry it 8 m astray.
+TEST(PriorityBridge, WhoSpeaksSeldomIsHeardAtTheFirstMessageThatDoesNotFit) {
+  Scene scene = Validated(3);
+  Hide(scene);
+  scene.cars[0].yaw_rad = WrapAngle(scene.cars[0].yaw_rad + 0.7);
+  scene.Run(3.0, [&] {
+    if (scene.frames % 16 == 0) {
+      scene.Say(1, scene.cars[0].p + Eigen::Vector2d(1.0, -0.8), scene.cars[0].yaw_rad, 5.0);
+    }
+    for (const auto& line : scene.Priority()) EXPECT_LT(ErrorOf(line, scene.cars[0]), 5.0);
+  });
+  EXPECT_TRUE(scene.outputs.reports.empty());
+}
+
 TEST(PriorityBridge, BudgetEndsTheBridgeWithoutBlame) {
   Scene scene = Validated(3, 4.5, 120.0);
   const double budget_s = scene.Priority()[0].bridge_budget_s;
