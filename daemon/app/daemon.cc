@@ -131,6 +131,7 @@ class Daemon {
       RefreshFigures();
       LogRefusals();
       LogMounts();
+      LogNotices();
     }
   }
 
@@ -197,6 +198,18 @@ class Daemon {
       } else {
         spdlog::info("event=mount_right sensor=radar_{} yaw_correction_deg={:.2f} sigma_deg={:.2f}",
                      SensorKey(radars[i].name), correction_deg, sigma_deg);
+      }
+    }
+  }
+
+  void LogNotices() {
+    for (const NoticeBoard::Change& change : engine_.TakeNoticeChanges()) {
+      const wire::NoticeStatus& notice = change.notice;
+      if (change.has_begun) {
+        spdlog::warn("event={} channel={} value={:.3f} hint=\"{}\"", notice.name, notice.channel,
+                     notice.value, notice.advice);
+      } else {
+        spdlog::info("event={}_ended channel={}", notice.name, notice.channel);
       }
     }
   }

@@ -30,7 +30,8 @@ Engine::Engine(const DaemonConfig& config)
       decoder_(config.perception.vehicle, config.lcm.channels),
       perception_(config.perception, MakeBiasEstimator(config.gps_bias)),
       monitor_(config.mount_monitor, config.perception.vehicle),
-      watch_(decoder_.channels()) {
+      watch_(decoder_.channels()),
+      notices_(decoder_.channels()) {
   status_.version = V2VOUCH_VERSION;
   status_.calibration = CalibrationTitle(config);
 }
@@ -167,6 +168,10 @@ void Engine::PublishStatus(Outbox& outbox) {
                               .has_moved = mount.has_moved,
                               .driven_s = mount.driven_s});
   }
+  std::vector<Notice> notices;
+  perception_.CollectNotices(notices);
+  notices_.Update(notices, status_.stamp);
+  status_.notices = notices_.in_force();
   status_.digest_inputs = watch_.accepted();
   status_.digest_local = digest_local_.Hex();
   status_.digest_priority = digest_priority_.Hex();

@@ -11,6 +11,7 @@
 #include "calibration/monitor/mount_monitor.h"
 #include "daemon/assembly/daemon_config.h"
 #include "daemon/assembly/input_watch.h"
+#include "daemon/assembly/notice_board.h"
 #include "daemon/base/sha256.h"
 #include "daemon/pipeline/perception.h"
 #include "daemon/wire/input_decoder.h"
@@ -87,6 +88,8 @@ class Engine {
   [[nodiscard]] std::string digest_priority() const { return digest_priority_.Hex(); }
   /// What each radar's own returns say of its mount, in the configured order.
   [[nodiscard]] const std::vector<MountVerdict>& mounts() const { return monitor_.verdicts(); }
+  /// What began or ended since the last call, as of the last status.
+  std::vector<NoticeBoard::Change> TakeNoticeChanges() { return notices_.TakeChanges(); }
   /// Whether the last OnMessage or OnDetections gave new lists.
   [[nodiscard]] bool has_lists() const { return has_lists_; }
 
@@ -101,6 +104,7 @@ class Engine {
   Perception perception_;
   MountMonitor monitor_;
   InputWatch watch_;
+  NoticeBoard notices_;
   Outputs outputs_;
   ReasonCounts refusals_{};
   Sha256 digest_local_;

@@ -267,6 +267,8 @@ bool Perception::ego_gnss_suspect() const {
 
 const BiasReport& Perception::bias_report() const { return state_->bias->report(); }
 
+void Perception::CollectNotices(std::vector<Notice>&) const {}
+
 bool Perception::IsRadarAlive(int radar) const {
   return state_->timeline.local().IsRadarAlive(radar);
 }

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "daemon/base/notice.h"
 #include "daemon/data/bias.h"
 #include "daemon/data/input.h"
 #include "daemon/data/outputs.h"
@@ -35,6 +37,8 @@ class Perception {
   [[nodiscard]] bool ego_gnss_suspect() const;
   /// The newest settled GPS bias estimates.
   [[nodiscard]] const BiasReport& bias_report() const;
+  /// Adds the conditions that hold now (daemon/base/notice.h).
+  void CollectNotices(std::vector<Notice>& notices) const;
   /// Whether each configured sensor has spoken within three of its periods; radars, then cameras.
   [[nodiscard]] bool IsRadarAlive(int radar) const;
   [[nodiscard]] bool IsCameraAlive(int camera) const;

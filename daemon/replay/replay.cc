@@ -75,6 +75,20 @@ bool IsSameFile(const std::string& a, const std::string& b) {
   return std::filesystem::equivalent(a, b, ignored);
 }
 
+void Note(const std::vector<NoticeBoard::Change>& changes, std::vector<ReplayedNotice>& notices) {
+  for (const NoticeBoard::Change& change : changes) {
+    if (!change.has_begun) continue;
+    const auto known = std::ranges::find_if(notices, [&](const ReplayedNotice& each) {
+      return each.notice.name == change.notice.name && each.notice.channel == change.notice.channel;
+    });
+    if (known != notices.end()) {
+      ++known->times;
+    } else {
+      notices.push_back({.notice = change.notice});
+    }
+  }
+}
+
 void WriteAll(const Outbox& outbox, Timestamp at, LogWriter* writer) {
   if (writer == nullptr) return;
   for (const Outbox::Message& message : outbox.messages()) {
@@ -135,6 +149,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
     engine.OnMessage(event.channel, event.bytes, event.received, outbox);
     result.step_us.push_back(Microseconds(SteadyClock::now() - before));
     if (engine.has_lists()) ++result.lists;
+    Note(engine.TakeNoticeChanges(), result.notices);
     WriteAll(outbox, event.received, writer.get());
   }
   result.wall_seconds = std::chrono::duration<double>(SteadyClock::now() - started).count();

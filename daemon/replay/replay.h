@@ -8,10 +8,17 @@
 
 #include "daemon/assembly/daemon_config.h"
 #include "daemon/base/reason.h"
+#include "daemon/wire/status.h"
 
 namespace v2vouch {
 
 /// What a replay came to.
+/// A notice that was in force at some time of the log.
+struct ReplayedNotice {
+  wire::NoticeStatus notice;  ///< With its value when it began.
+  std::int64_t times = 1;     ///< How often it began.
+};
+
 struct ReplayResult {
   std::int64_t events = 0;  ///< Read from the log.
   std::int64_t inputs = 0;  ///< Of these, on channels of the vehicle.
@@ -27,6 +34,7 @@ struct ReplayResult {
   double wall_seconds = 0.0;
   std::vector<double> step_us;  ///< Wall time of each input, decode to encode.
   ReasonCounts refused{};
+  std::vector<ReplayedNotice> notices;  ///< In order of their first beginning.
   std::string digest_local;
   std::string digest_priority;
 
@@ -48,6 +56,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& c
 
 /// {"events":..,"log_seconds":..,"wall_seconds":..,"realtime_factor":..,
 ///  "step_us":{"p50":..,"p99":..,"max":..},"refused":{"REASON":n,...},
+///  "notices":[{"name":..,"channel":..,"value":..,"since_utime":..,"times":..},...],
 ///  "digest_local":"...","digest_priority":"...", and the other counts}
 std::string JsonReport(const ReplayResult& result);
 

@@ -47,6 +47,14 @@ std::string JsonReport(const ReplayResult& result) {
       refused[std::string(ReasonName(static_cast<Reason>(i)))] = result.refused[i];
     }
   }
+  nlohmann::ordered_json notices = nlohmann::ordered_json::array();
+  for (const ReplayedNotice& each : result.notices) {
+    notices.push_back({{"name", each.notice.name},
+                       {"channel", each.notice.channel},
+                       {"value", each.notice.value},
+                       {"since_utime", ToMicros(each.notice.since)},
+                       {"times", each.times}});
+  }
   const nlohmann::ordered_json report = {
       {"events", result.events},
       {"inputs", result.inputs},
@@ -61,6 +69,7 @@ std::string JsonReport(const ReplayResult& result) {
       {"realtime_factor", result.realtime_factor()},
       {"step_us", {{"p50", step.p50}, {"p99", step.p99}, {"max", step.max}}},
       {"refused", refused},
+      {"notices", notices},
       {"digest_local", result.digest_local},
       {"digest_priority", result.digest_priority}};
   return report.dump() + "\n";
@@ -90,6 +99,12 @@ std::string TextReport(const ReplayResult& result) {
     if (result.refused[i] == 0) continue;
     text += CountLine("refused " + std::string(ReasonName(static_cast<Reason>(i))),
                       static_cast<std::int64_t>(result.refused[i]));
+  }
+  for (const ReplayedNotice& each : result.notices) {
+    char value[32];
+    std::snprintf(value, sizeof(value), " %.3g", each.notice.value);
+    text += "notice " + each.notice.name + " " + each.notice.channel + value + ": " +
+            each.notice.advice + "\n";
   }
   text += "digest LOCAL          " + result.digest_local + "\n";
   text += "digest PRIORITY       " + result.digest_priority + "\n";

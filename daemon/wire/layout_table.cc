@@ -19,6 +19,7 @@
 #include "v2vouch/input_status_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
 #include "v2vouch/mount_status_t.hpp"
+#include "v2vouch/notice_t.hpp"
 #include "v2vouch/radar_detection_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/sector_health_t.hpp"
@@ -189,6 +190,15 @@ constexpr Field kMountStatusFields[] = {
 };
 constexpr Layout kMountStatus = MakeLayout("mount_status_t", kMountStatusFields);
 
+constexpr Field kNoticeFields[] = {
+    {.name = "name", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "channel", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "value", .kind = Kind::kDouble},
+    {.name = "since_utime", .kind = Kind::kInt64},
+    {.name = "advice", .kind = Kind::kString, .max_length = kMaxNameBytes},
+};
+constexpr Layout kNotice = MakeLayout("notice_t", kNoticeFields);
+
 constexpr Field kDaemonStatusFields[] = {
     {.name = "utime", .kind = Kind::kInt64},
     {.name = "seq", .kind = Kind::kInt64},
@@ -211,6 +221,8 @@ constexpr Field kDaemonStatusFields[] = {
     {.name = "gps_bias", .kind = Kind::kStruct, .type = &kGpsBias},
     {.name = "num_mounts", .kind = Kind::kInt32},
     {.name = "mounts", .kind = Kind::kStruct, .type = &kMountStatus, .max_count = 64},
+    {.name = "num_notices", .kind = Kind::kInt32},
+    {.name = "notices", .kind = Kind::kStruct, .type = &kNotice, .max_count = 256},
     {.name = "digest_inputs", .kind = Kind::kInt64},
     {.name = "digest_local", .kind = Kind::kString, .max_length = kMaxNameBytes},
     {.name = "digest_priority", .kind = Kind::kString, .max_length = kMaxNameBytes},
@@ -457,6 +469,7 @@ V2VOUCH_LAYOUT(ego_motion_t, kEgoMotion)
 V2VOUCH_LAYOUT(evidence_t, kEvidence)
 V2VOUCH_LAYOUT(gnss_fix_t, kGnssFix)
 V2VOUCH_LAYOUT(mount_status_t, kMountStatus)
+V2VOUCH_LAYOUT(notice_t, kNotice)
 V2VOUCH_LAYOUT(misbehavior_report_t, kMisbehaviorReport)
 V2VOUCH_LAYOUT(radar_detection_t, kRadarDetection)
 V2VOUCH_LAYOUT(radar_scan_t, kRadarScan)

@@ -262,6 +262,16 @@ void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes) {
     to.mounts.push_back(mount);
   }
   SetCount(to.num_mounts, to.mounts);
+  for (const NoticeStatus& from : status.notices) {
+    notice_t notice{};
+    notice.name = Name(from.name);
+    notice.channel = Name(from.channel);
+    notice.value = from.value;
+    notice.since_utime = ToMicros(from.since);
+    notice.advice = Name(from.advice);
+    to.notices.push_back(notice);
+  }
+  SetCount(to.num_notices, to.notices);
   to.digest_inputs = status.digest_inputs;
   to.digest_local = Name(status.digest_local);
   to.digest_priority = Name(status.digest_priority);

@@ -33,6 +33,15 @@ struct MountStatus {
   double driven_s = 0.0;
 };
 
+/// A condition in force; see daemon/base/notice.h.
+struct NoticeStatus {
+  std::string name;
+  std::string channel;  ///< Empty: the car as a whole.
+  double value = 0.0;   ///< NaN: none.
+  Timestamp since{};
+  std::string advice;
+};
+
 struct StageLatency {
   std::string stage;
   double p50_us = 0.0;
@@ -58,6 +67,7 @@ struct Status {
   bool ego_gnss_suspect = false;
   BiasReport gps_bias;
   std::vector<MountStatus> mounts;
+  std::vector<NoticeStatus> notices;
   std::int64_t digest_inputs = 0;
   std::string digest_local;
   std::string digest_priority;

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/base/notice.h"
+
+namespace v2vouch {
+namespace {
+
+struct Words {
+  std::string_view name;
+  std::string_view advice;
+};
+
+constexpr std::array<Words, kNoticeKindCount> kWords = {{
+    {"clock_ahead", "synchronise this source's clock, or configure its constant clock_offset_s"},
+    {"clock_behind", "synchronise this source's clock, or shorten its way to the daemon"},
+    {"clock_stuck", "this source repeats one time of measurement; restart it"},
+    {"input_silent", "is the source running, and does it publish on this channel?"},
+    {"over_budget", "this source sends more late data than is worth re-running"},
+}};
+
+static_assert(!kWords.back().name.empty(), "one entry per kind");
+
+}  // namespace
+
+std::string_view NoticeName(NoticeKind kind) {
+  const auto index = static_cast<std::size_t>(kind);
+  return index < kNoticeKindCount ? kWords[index].name : "invalid";
+}
+
+std::string_view NoticeAdvice(NoticeKind kind) {
+  const auto index = static_cast<std::size_t>(kind);
+  return index < kNoticeKindCount ? kWords[index].advice : "";
+}
+
+}  // namespace v2vouch

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+namespace v2vouch {
+
+/// A condition that is in force and that whoever runs the daemon should know. Each is published in
+/// V2VOUCH_STATUS as long as it holds, and logged when it begins and ends.
+enum class NoticeKind : std::uint8_t {
+  kClockAhead,   ///< The source's stamps are ahead of what the other own sensors agree on [s].
+  kClockBehind,  ///< The same, behind: its frames are too late to be used [s].
+  kClockStuck,   ///< The source's stamps stand still while messages arrive [s of arrival].
+  kInputSilent,  ///< Nothing has arrived from a configured own source for so long [s].
+  kOverBudget,   ///< Late data of the source beyond the work budget is refused [messages].
+  kCount
+};
+
+inline constexpr std::size_t kNoticeKindCount = static_cast<std::size_t>(NoticeKind::kCount);
+
+/// Snake-case name as published, e.g. "clock_ahead".
+std::string_view NoticeName(NoticeKind kind);
+
+/// What to do about it, one sentence.
+std::string_view NoticeAdvice(NoticeKind kind);
+
+/// What a notice is about.
+struct NoticeSubject {
+  enum class Kind : std::uint8_t { kCar, kEgoMotion, kGnss, kRadar, kCamera, kSender };
+  Kind kind = Kind::kCar;
+  std::uint32_t index = 0;  ///< Of the radar or camera in the configuration; id of the sender.
+  friend bool operator==(const NoticeSubject&, const NoticeSubject&) = default;
+};
+
+struct Notice {
+  NoticeKind kind = NoticeKind::kCount;
+  NoticeSubject subject;
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< In the unit of the kind; NaN: none.
+};
+
+}  // namespace v2vouch
