@@ -26,6 +26,7 @@ bool IsChannelOf(const wire::InputChannel& channel, const NoticeSubject& subject
     case NoticeSubject::Kind::kCamera:
       return is_its_sensor && (channel.kind == wire::InputKind::kCameraBoxes ||
                                channel.kind == wire::InputKind::kCameraImage);
+    case NoticeSubject::Kind::kV2v:
     case NoticeSubject::Kind::kSender:
       return channel.kind == wire::InputKind::kBsm;
     case NoticeSubject::Kind::kCar:

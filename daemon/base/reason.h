@@ -27,9 +27,12 @@ enum class Reason : std::uint8_t {
   // Time and order.
   kDuplicate,
   kTooOld,       ///< Older than the replay buffer.
-  kFutureStamp,  ///< Too far ahead of the other own sensors.
+  kFutureStamp,  ///< Too far ahead of what the own sensors agree on.
+  kStuckStamp,   ///< One time of measurement over and over.
+  kOverRate,     ///< More messages in a stretch of message time than any such sensor sends.
+  kOverBudget,   ///< Late, and putting it in its place would cost more work than there is.
   kNoEgoMotion,
-  kClockRestart,  ///< Not a refusal: all own sensors stepped back, everything started again.
+  kClockRestart,  ///< Not a refusal: the common clock was set, everything started again.
   // Camera.
   kNoDetector,
   kBadImage,

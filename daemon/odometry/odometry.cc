@@ -73,13 +73,13 @@ void EgoOdometry::OnEgoMotion(const EgoMotion& sample) {
   ++count_;
 }
 
-std::optional<EgoState> EgoOdometry::StateAt(Timestamp t) const {
+std::optional<EgoState> EgoOdometry::StateAt(Timestamp t, double max_gap_s) const {
   std::size_t age = 0;
   while (age < held() && Sample(age).stamp > t) ++age;
   if (age == held()) return std::nullopt;
   EgoState state = Sample(age);
   const double ahead_s = ToSeconds(t - state.stamp);
-  if (ahead_s > kMaxGap_s) return std::nullopt;
+  if (ahead_s > max_gap_s) return std::nullopt;
 
   // A braking car stops and stays; it does not roll back.
   double moving_s = ahead_s;

@@ -25,6 +25,8 @@ namespace v2vouch {
 /// copy is a checkpoint. Holds a short history so that late frames find their pose.
 class EgoOdometry {
  public:
+  static constexpr double kMaxGap_s = 0.5;
+
   /// Samples come in order of stamp (the pipeline re-runs late ones). One with the stamp of the
   /// newest replaces it; an older one is ignored.
   void OnEgoMotion(const EgoMotion& sample);
@@ -32,12 +34,12 @@ class EgoOdometry {
   /// The ego at `t`, from the newest sample with stamp <= t, extrapolated. nullopt: no sample at or
   /// before t, t is older than the history, or that sample is more than kMaxGap_s old (then the
   /// car's motion is not known).
-  [[nodiscard]] std::optional<EgoState> StateAt(Timestamp t) const;
+  /// @param max_gap_s larger only where a guess is what is asked for.
+  [[nodiscard]] std::optional<EgoState> StateAt(Timestamp t, double max_gap_s = kMaxGap_s) const;
 
   /// Stamp of the newest sample.
   [[nodiscard]] std::optional<Timestamp> newest() const;
 
-  static constexpr double kMaxGap_s = 0.5;
   static constexpr std::size_t kHistory = 128;  ///< Samples: 1.2 s at 100 Hz.
 
  private:

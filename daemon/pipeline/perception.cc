@@ -5,29 +5,64 @@
 #include <utility>
 
 #include "daemon/models/ctra.h"
-#include "daemon/pipeline/clock_guard.h"
+#include "daemon/pipeline/source_clock.h"
 #include "daemon/pipeline/timeline.h"
 #include "daemon/pipeline/v2v_list.h"
 
 namespace v2vouch {
 namespace {
 
-// Numbers for the clock guard; radars and cameras follow by index.
-enum Source { kEgoSource = 0, kRadarSource = 1000, kCameraSource = 2000 };
-
 // The diagnostic list of senders can be long; ten times a second is enough for eyes.
 constexpr double kV2vListPeriod_s = 0.1;
 
-int SourceOf(const EgoMotion&) { return kEgoSource; }
-int SourceOf(const RadarScan& scan) { return kRadarSource + scan.radar; }
-int SourceOf(const CameraDetections& boxes) { return kCameraSource + boxes.camera; }
+using SubjectKind = NoticeSubject::Kind;
+
+NoticeSubject SourceOf(const EgoMotion&) { return {SubjectKind::kEgoMotion, 0}; }
+NoticeSubject SourceOf(const RadarScan& scan) {
+  return {SubjectKind::kRadar, static_cast<std::uint32_t>(scan.radar)};
+}
+NoticeSubject SourceOf(const CameraDetections& boxes) {
+  return {SubjectKind::kCamera, static_cast<std::uint32_t>(boxes.camera)};
+}
+// What is not known of the ego's own motion `gap_s` after its last sample, for lists that are read
+// from the ego: it may have braked or steered since. Accelerations of 2 m/s^2 either way are one
+// sigma, and so is a change of the yaw rate by 0.1 rad/s in a second.
+StateMatrix EgoDoubt(double gap_s) {
+  constexpr double kAccelSigma_mps2 = 2.0;
+  constexpr double kYawAccelSigma_radps2 = 0.1;
+  const double position_m = 0.5 * kAccelSigma_mps2 * gap_s * gap_s;
+  const double yaw_rad = 0.5 * kYawAccelSigma_radps2 * gap_s * gap_s;
+  StateMatrix doubt = StateMatrix::Zero();
+  doubt(kX, kX) = doubt(kY, kY) = position_m * position_m;
+  doubt(kYaw, kYaw) = yaw_rad * yaw_rad;
+  return doubt;
+}
+
+constexpr NoticeSubject kGnssSource{SubjectKind::kGnss, 0};
+constexpr NoticeSubject kV2vSource{SubjectKind::kV2v, 0};
+
+std::optional<Reason> RefusalOf(SourceClock::Ruling ruling) {
+  switch (ruling) {
+    case SourceClock::Ruling::kAccept:
+      return std::nullopt;
+    case SourceClock::Ruling::kAhead:
+      return Reason::kFutureStamp;
+    case SourceClock::Ruling::kBehind:
+      return Reason::kTooOld;
+    case SourceClock::Ruling::kStuck:
+      return Reason::kStuckStamp;
+    case SourceClock::Ruling::kOverRate:
+      return Reason::kOverRate;
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
 struct Perception::State {
   State(const PerceptionConfig& configuration, std::unique_ptr<BiasEstimator> estimator)
       : config(configuration),
-        guard(configuration.timeline),
+        clock(configuration.timeline),
         timeline(configuration),
         intake(configuration.v2v),
         bias(std::move(estimator)) {}
@@ -38,14 +73,14 @@ struct Perception::State {
   void OnBsm(const Bsm& bsm, Outputs& outputs);
   void Tell(const Bsm& bsm, std::optional<Reason> refusal, Outputs& outputs) const;
   void Settle();
-  void Restart(Outputs& outputs);
-  [[nodiscard]] bool IsTooFarAhead(Timestamp stamp) const;
+  void Restart();
+  bool IsTooFarAhead(const NoticeSubject& guest, Timestamp stamp);
   [[nodiscard]] EgoPlace Place() const;
   void Publish(bool is_correction, Outputs& outputs);
   void LocalList(const LocalFrame& frame, TrackList& list) const;
 
   PerceptionConfig config;
-  ClockGuard guard;
+  SourceClock clock;
   Timeline timeline;
   BsmIntake intake;
   std::unique_ptr<BiasEstimator> bias;
@@ -82,31 +117,32 @@ void Perception::Step(const Input& input, Outputs& outputs) {
 
 template <class OwnMessage>
 void Perception::State::OnOwn(const OwnMessage& message, Outputs& outputs) {
-  switch (guard.Judge(SourceOf(message), message.stamp)) {
-    case ClockGuard::Ruling::kTooFarAhead:
-      return outputs.Refuse(Reason::kFutureStamp, message.stamp);
-    case ClockGuard::Ruling::kRestart:
-      Restart(outputs);
-      outputs.Refuse(Reason::kClockRestart, message.stamp);
-      break;
-    case ClockGuard::Ruling::kAccept:
-      break;
+  const SourceClock::Judgement judgement = clock.Judge(SourceOf(message), message.stamp);
+  if (judgement.is_restart) {
+    Restart();
+    outputs.Refuse(Reason::kClockRestart, message.stamp);
   }
-  const auto placement = timeline.Insert(message, outputs);
-  if constexpr (!std::is_same_v<OwnMessage, EgoMotion>) {
-    if (placement.is_taken && timeline.newest_frame() != nullptr) {
-      Publish(placement.is_correction, outputs);
-    }
+  if (const auto refusal = RefusalOf(judgement.ruling)) {
+    return outputs.Refuse(*refusal, message.stamp);
   }
+  const auto placement = timeline.Insert(message, *clock.agreed(), outputs);
+  clock.SetStrict(timeline.is_short_of_work());
+  // A frame that LOCAL could not use changes nothing: the list would go out again with its old
+  // time, as if it were fresh.
+  if (placement.has_frame) Publish(placement.is_correction, outputs);
 }
 
 void Perception::State::OnFix(const GnssFix& fix, Outputs& outputs) {
-  if (IsTooFarAhead(fix.stamp)) return outputs.Refuse(Reason::kFutureStamp, fix.stamp);
-  timeline.Insert(fix, outputs);
+  if (IsTooFarAhead(kGnssSource, fix.stamp)) {
+    return outputs.Refuse(Reason::kFutureStamp, fix.stamp);
+  }
+  timeline.Insert(fix, clock.agreed().value_or(fix.stamp), outputs);
 }
 
 void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
-  if (IsTooFarAhead(bsm.stamp)) return outputs.Refuse(Reason::kFutureStamp, bsm.stamp);
+  if (IsTooFarAhead(kV2vSource, bsm.stamp)) {
+    return outputs.Refuse(Reason::kFutureStamp, bsm.stamp);
+  }
   const EgoPlace place = Place();
   intake.Expire(bsm.stamp);
   const auto claim = intake.Accept(bsm, place);
@@ -124,7 +160,8 @@ void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
   if (const SenderTrack* sender = intake.Find(bsm.sender)) {
     followed.first_heard = sender->first_received;
   }
-  timeline.Insert(TimedClaim{followed, bsm.seq, bias->Estimate(bsm.sender, bsm.stamp)}, outputs);
+  timeline.Insert(TimedClaim{followed, bsm.seq, bias->Estimate(bsm.sender, bsm.stamp)},
+                  clock.agreed().value_or(bsm.stamp), outputs);
   for (const Diagnostic& diagnostic : outputs.diagnostics) {
     if (diagnostic.reason == Reason::kBsmContradicted && diagnostic.stamp == bsm.stamp) {
       return Tell(bsm, diagnostic.reason, outputs);
@@ -155,7 +192,7 @@ void Perception::State::Settle() {
   if (timeline.settled() != Timestamp{}) bias->AdvanceTo(timeline.settled() - kTick);
 }
 
-void Perception::State::Restart(Outputs&) {
+void Perception::State::Restart() {
   timeline = Timeline(config);
   intake = BsmIntake(config.v2v);
   bias->Restart();
@@ -164,8 +201,8 @@ void Perception::State::Restart(Outputs&) {
   revision = 0;
 }
 
-bool Perception::State::IsTooFarAhead(Timestamp stamp) const {
-  return guard.newest() && stamp > *guard.newest() + FromSeconds(config.timeline.future_s);
+bool Perception::State::IsTooFarAhead(const NoticeSubject& guest, Timestamp stamp) {
+  return clock.JudgeGuest(guest, stamp) == SourceClock::Ruling::kAhead;
 }
 
 EgoPlace Perception::State::Place() const {
@@ -227,32 +264,49 @@ void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
   if (frame == nullptr || at < frame->stamp) return;
   outputs.has_lists = true;
   const EgoOdometry& odometry = state.timeline.local().odometry();
+  const double hold_s = state.config.timeline.stale_hold_s;
+  const Timestamp end = frame->stamp + FromSeconds(hold_s);
+  // The ego drives on like everybody else; past the end it is of no use to anybody.
+  const auto ego_at = [&](Timestamp t) {
+    const double longest_gap_s = EgoOdometry::kMaxGap_s + hold_s;
+    return odometry.StateAt(std::min(t, end), longest_gap_s).value_or(frame->ego);
+  };
+  const auto doubt = [&](Timestamp t) {
+    const Timestamp known = odometry.newest().value_or(frame->stamp);
+    return EgoDoubt(std::max(0.0, ToSeconds(std::min(t, end) - known)));
+  };
 
   state.LocalList(*frame, outputs.local);
   outputs.local.stamp = at;
   outputs.local.stale = true;
-  outputs.local.X_OB = odometry.StateAt(at).value_or(frame->ego).X_OB;
-  for (PublishedTrack& line : outputs.local.tracks) {
-    PredictCtra(line.track.state_O, ToSeconds(at - frame->stamp), state.config.tracking.motion);
-  }
+  outputs.local.X_OB = ego_at(at).X_OB;
   for (SectorHealth& sector : outputs.local.sectors) sector.state = SectorState::kBlind;
 
   const Timestamp at_v2v = std::max(at, state.timeline.newest_time());
-  const EgoState ego_at = odometry.StateAt(at_v2v).value_or(frame->ego);
+  const EgoState ego_v2v = ego_at(at_v2v);
   outputs.priority = outputs.local;
   outputs.priority.stamp = at_v2v;
-  outputs.priority.X_OB = ego_at.X_OB;
+  outputs.priority.X_OB = ego_v2v.X_OB;
   outputs.priority.tracks.clear();
   outputs.priority.ego_gnss_suspect = state.timeline.priority().is_ego_gnss_suspect();
-  state.timeline.priority().Publish(at_v2v, ego_at, outputs.priority);
 
   // Nobody vouches for anything any more: empty and blind, which is not the same as "nothing
   // there".
-  if (ToSeconds(at - frame->stamp) > state.config.tracking.hidden_hold_s) {
+  if (at > end) {
     outputs.local.tracks.clear();
-    outputs.priority.tracks.clear();
+    return;
+  }
+  for (PublishedTrack& line : outputs.local.tracks) {
+    PredictCtra(line.track.state_O, ToSeconds(at - frame->stamp), state.config.tracking.motion);
+    line.track.state_O.covariance += doubt(at);
+  }
+  state.timeline.priority().Publish(at_v2v, ego_v2v, outputs.priority);
+  for (PublishedTrack& line : outputs.priority.tracks) {
+    line.track.state_O.covariance += doubt(at_v2v);
   }
 }
+
+std::optional<Timestamp> Perception::agreed_time() const { return state_->clock.agreed(); }
 
 Timestamp Perception::newest_frame() const {
   const LocalFrame* frame = state_->timeline.newest_frame();
@@ -267,7 +321,9 @@ bool Perception::ego_gnss_suspect() const {
 
 const BiasReport& Perception::bias_report() const { return state_->bias->report(); }
 
-void Perception::CollectNotices(std::vector<Notice>&) const {}
+void Perception::CollectNotices(std::vector<Notice>& notices) const {
+  state_->clock.CollectNotices(notices);
+}
 
 bool Perception::IsRadarAlive(int radar) const {
   return state_->timeline.local().IsRadarAlive(radar);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "daemon/base/notice.h"
@@ -31,6 +32,8 @@ class Perception {
   /// sectors blind; empty once a hidden vehicle would be given up. Changes no state.
   void PredictedLists(Timestamp at, Outputs& outputs) const;
 
+  /// What time it is by most own sensors; nullopt before the first message.
+  [[nodiscard]] std::optional<Timestamp> agreed_time() const;
   /// Newest time of any own-sensor frame; the clock of everything that is published.
   [[nodiscard]] Timestamp newest_frame() const;
   [[nodiscard]] int sender_count() const;

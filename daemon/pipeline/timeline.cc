@@ -33,6 +33,9 @@ std::uint64_t Hash(std::string_view text, std::uint64_t seed) {  // FNV-1a.
   return hash;
 }
 
+// A message no older than this against the agreed time is not late.
+constexpr double kOnTime_s = 0.1;
+
 // Events without a checkpoint in a row, at most: where no frames come the ego's motion gets some.
 constexpr std::size_t kLongestRun = 64;
 
@@ -105,34 +108,59 @@ std::unique_ptr<Timeline::Checkpoint> Timeline::NewCheckpoint() {
   return checkpoint;
 }
 
-// Only LOCAL's own inputs move the window that decides what is too old: a message from outside
-// must not be able to push one of ours out.
+// Nothing from outside moves the agreed time, so nothing from outside can push one of ours out.
 std::optional<Reason> Timeline::WhyNot(const TimelineInput& input) const {
-  if (!newest_local_) {
-    return IsLocal(input) ? std::nullopt : std::optional(Reason::kNoEgoMotion);
-  }
+  if (!has_local_) return IsLocal(input) ? std::nullopt : std::optional(Reason::kNoEgoMotion);
   const EventKey key = KeyOf(input);
-  if (key.time < *newest_local_ - FromSeconds(config_.timeline.replay_buffer_s)) {
-    return Reason::kTooOld;
-  }
-  // Repeated BSMs were caught at the intake.
+  if (key.time < *agreed_ - FromSeconds(config_.timeline.replay_buffer_s)) return Reason::kTooOld;
+  // Equal time, channel and counter: counters alone may stand still or start again. Repeated BSMs
+  // were caught at the intake.
+  const auto place =
+      std::lower_bound(events_.begin(), events_.end(), key,
+                       [](const auto& event, const EventKey& k) { return event->key < k; });
   const bool is_duplicate =
-      key.rank != kClaimRank &&
-      std::any_of(events_.rbegin(), events_.rend(), [&](const std::unique_ptr<Event>& event) {
-        return event->key.rank == key.rank && event->key.channel == key.channel &&
-               event->key.seq == key.seq;
-      });
+      key.rank != kClaimRank && place != events_.end() && (*place)->key == key;
   return is_duplicate ? std::optional(Reason::kDuplicate) : std::nullopt;
 }
 
-Timeline::Placement Timeline::Insert(TimelineInput input, Outputs& outputs) {
+// Work that was not needed is saved up for one second at most.
+void Timeline::AdvanceTo(Timestamp agreed) {
+  const double rate = config_.timeline.rerun_budget;
+  if (!agreed_) {
+    budget_ = rate;
+  } else if (agreed > *agreed_) {
+    budget_ = std::min(rate, budget_ + rate * std::min(1.0, ToSeconds(agreed - *agreed_)));
+  }
+  agreed_ = agreed_ ? std::max(*agreed_, agreed) : agreed;
+}
+
+// Whether there is work left for the frames that would have to be run again. A message that is not
+// late by the agreed time is not at fault when others are ahead of it.
+bool Timeline::IsAffordable(const TimelineInput& input) {
   const EventKey key = KeyOf(input);
+  int frames = 0;
+  for (auto event = events_.rbegin(); event != events_.rend() && (*event)->key > key; ++event) {
+    frames += HasFrame((*event)->input) ? 1 : 0;
+  }
+  const bool is_late = key.time < *agreed_ - FromSeconds(kOnTime_s);
+  if (is_late && frames > budget_) return false;
+  budget_ = std::max(budget_ - frames, -config_.timeline.rerun_budget);
+  return true;
+}
+
+Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outputs& outputs) {
+  const EventKey key = KeyOf(input);
+  AdvanceTo(agreed);
   if (const auto reason = WhyNot(input)) {
     outputs.Refuse(*reason, key.time);
     return {};
   }
   const bool is_local = IsLocal(input);
-  if (is_local) newest_local_ = std::max(newest_local_.value_or(key.time), key.time);
+  if (is_local && !IsAffordable(input)) {
+    outputs.Refuse(Reason::kOverBudget, key.time);
+    return {};
+  }
+  has_local_ = has_local_ || is_local;
 
   const auto before = std::find_if(events_.rbegin(), events_.rend(),
                                    [&](const auto& event) { return event->key <= key; });
@@ -158,6 +186,7 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Outputs& outputs) {
   if (!is_last) priority_ = start.priority;
   placement.v2v_events = RunPriority(from, outputs);
 
+  placement.has_frame = events_[place]->has_frame;
   placement.is_correction =
       HasFrame(events_[place]->input) &&
       std::any_of(events_.begin() + static_cast<std::ptrdiff_t>(place) + 1, events_.end(),
@@ -250,7 +279,7 @@ void Timeline::EmitOnce(Event& event, const Outputs& step, Outputs& outputs) {
 
 void Timeline::Trim() {
   const Timestamp oldest =
-      newest_local_.value_or(Timestamp{}) - FromSeconds(config_.timeline.replay_buffer_s);
+      agreed_.value_or(Timestamp{}) - FromSeconds(config_.timeline.replay_buffer_s);
   for (;;) {
     // Settled is all before a checkpointed event that itself lies before the buffer.
     std::size_t next = settled_events_ + 1;

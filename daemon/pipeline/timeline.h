@@ -50,6 +50,7 @@ class Timeline {
 
   struct Placement {
     bool is_taken = false;
+    bool has_frame = false;      ///< It was a frame, and LOCAL could use it.
     bool is_correction = false;  ///< A frame that later frames of LOCAL had to be re-run for.
     int local_frames = 0;        ///< Frames that LOCAL was stepped through for it, itself included.
     int v2v_events = 0;  ///< Frames, fixes and claims that the V2V side was stepped through.
@@ -57,7 +58,15 @@ class Timeline {
 
   /// Refusals and reports go to `outputs` once per event, however often it is re-run. What is taken
   /// of LOCAL's inputs depends on LOCAL's inputs alone.
-  Placement Insert(TimelineInput input, Outputs& outputs);
+  ///
+  /// Late data may cause `rerun_budget` frames of LOCAL to be run again per second of agreed time;
+  /// beyond it late inputs of LOCAL's are refused (kOverBudget). What is not late is always taken.
+  /// @param agreed what time it is (SourceClock); what is older than the buffer is refused.
+  Placement Insert(TimelineInput input, Timestamp agreed, Outputs& outputs);
+  /// The budget is nearly spent.
+  [[nodiscard]] bool is_short_of_work() const {
+    return budget_ < 0.5 * config_.timeline.rerun_budget;
+  }
 
   [[nodiscard]] const LocalPerception& local() const { return local_; }
   [[nodiscard]] const PriorityPerception& priority() const { return priority_; }
@@ -97,6 +106,8 @@ class Timeline {
   std::unique_ptr<Event> NewEvent(TimelineInput input);
   std::unique_ptr<Checkpoint> NewCheckpoint();
   [[nodiscard]] std::optional<Reason> WhyNot(const TimelineInput& input) const;
+  void AdvanceTo(Timestamp agreed);
+  [[nodiscard]] bool IsAffordable(const TimelineInput& input);
   [[nodiscard]] bool NeedsCheckpoint(const TimelineInput& input) const;
   /// Both from event `from` to the newest. @return the number of frames / V2V events stepped.
   int RunLocal(std::size_t from, Outputs& outputs);
@@ -113,9 +124,11 @@ class Timeline {
   std::vector<std::unique_ptr<Event>> spare_events_;
   std::vector<std::unique_ptr<Checkpoint>> spare_checkpoints_;
   std::vector<BiasResidual> settled_residuals_;
-  std::vector<Reported> reported_;         // Of the buffer's time.
-  std::optional<Timestamp> newest_local_;  // Of any input LOCAL reads.
-  Timestamp newest_{};                     // Of any frame or claim.
+  std::vector<Reported> reported_;   // Of the buffer's time.
+  bool has_local_ = false;           // An input LOCAL reads was taken.
+  std::optional<Timestamp> agreed_;  // Never goes back.
+  double budget_ = 0.0;              // Frames that may still be run again.
+  Timestamp newest_{};               // Of any frame or claim.
   Timestamp settled_{};
   Outputs step_;
 };

@@ -437,7 +437,12 @@ void Tracker::Vote(std::size_t track, const CameraMeasurement& z) {
 void Tracker::Start(const TrackFilter& filter, int sensor, std::size_t index, double existence) {
   // An index beyond what an id can hold starts nothing: no scan has 256 vehicles.
   if (index > 255) return;
-  StartAs(PackId(now_, sensor, static_cast<int>(index)), filter, existence);
+  std::uint64_t id = PackId(now_, sensor, static_cast<int>(index));
+  // Two messages of one sensor may bear one stamp.
+  while (std::ranges::any_of(tracks_, [id](const LocalTrack& other) { return other.id == id; })) {
+    ++id;
+  }
+  StartAs(id, filter, existence);
 }
 
 bool Tracker::StartAs(std::uint64_t id, const TrackFilter& filter, double existence) {

@@ -49,6 +49,15 @@ bool IsFrame(const Input& input) {
          std::holds_alternative<CameraDetections>(input);
 }
 
+/// The agreed time, where no source is wrong: the newest stamp so far.
+class Newest {
+ public:
+  Timestamp Hear(Timestamp stamp) { return newest_ = std::max(newest_, stamp); }
+
+ private:
+  Timestamp newest_{};
+};
+
 std::optional<TimelineInput> ForTimeline(const Input& input) {
   if (const auto* motion = std::get_if<EgoMotion>(&input)) return TimelineInput(*motion);
   if (const auto* fix = std::get_if<GnssFix>(&input)) return TimelineInput(*fix);
@@ -73,6 +82,7 @@ TEST(LateData, AFrameCostsItselfAndTheFramesAfterIt) {
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     Timeline timeline(ConfigOf(drive));
     Outputs outputs;
+    Newest newest;
     std::vector<EventKey> frames;
     int most = 0;
     for (const auto& [arrival, input] : arrivals) {
@@ -81,7 +91,7 @@ TEST(LateData, AFrameCostsItselfAndTheFramesAfterIt) {
       const EventKey key = KeyOf(*event);
       const auto later = static_cast<int>(
           std::count_if(frames.begin(), frames.end(), [&](const EventKey& k) { return k > key; }));
-      const Timeline::Placement placement = timeline.Insert(*event, outputs);
+      const Timeline::Placement placement = timeline.Insert(*event, newest.Hear(key.time), outputs);
       ASSERT_TRUE(placement.is_taken);
       if (IsFrame(input)) {
         ASSERT_EQ(placement.local_frames, later + 1) << delay_s;
@@ -102,6 +112,7 @@ TEST(LateData, ALateFixStepsTheV2vSideAlone) {
   const SyntheticDrive drive = Traffic(2.0);
   Timeline timeline(ConfigOf(drive));
   Outputs outputs;
+  Newest newest;
   std::optional<GnssFix> held;
   int frames_since = 0;
   for (const Input& input : MakeInputs(drive)) {
@@ -112,9 +123,9 @@ TEST(LateData, ALateFixStepsTheV2vSideAlone) {
     }
     if (held && IsFrame(input)) ++frames_since;
     const auto event = ForTimeline(input);
-    if (event) timeline.Insert(*event, outputs);
+    if (event) timeline.Insert(*event, newest.Hear(HeaderOf(input).stamp), outputs);
     if (!held || frames_since < 12) continue;
-    const Timeline::Placement placement = timeline.Insert(*held, outputs);
+    const Timeline::Placement placement = timeline.Insert(*held, newest.Hear(held->stamp), outputs);
     EXPECT_EQ(placement.local_frames, 0);
     // Itself, twelve frames, two or three later fixes, and what lies between it and the last
     // checkpoint before it.
@@ -130,6 +141,7 @@ TEST(LateData, AnEgoSampleReRunsOnlyFramesAfterIt) {
   const SyntheticDrive drive = Traffic(2.0);
   Timeline timeline(ConfigOf(drive));
   Outputs outputs;
+  Newest newest;
   std::optional<EgoMotion> held;
   std::vector<Timestamp> frames;
   int tried = 0;
@@ -139,12 +151,14 @@ TEST(LateData, AnEgoSampleReRunsOnlyFramesAfterIt) {
       held = *motion;
       continue;
     }
-    if (const auto event = ForTimeline(input)) timeline.Insert(*event, outputs);
+    if (const auto event = ForTimeline(input)) {
+      timeline.Insert(*event, newest.Hear(HeaderOf(input).stamp), outputs);
+    }
     if (IsFrame(input)) frames.push_back(HeaderOf(input).stamp);
     if (!held || HeaderOf(input).stamp < held->stamp + FromSeconds(0.015 * (tried % 4))) continue;
     const auto later = std::count_if(frames.begin(), frames.end(),
                                      [&](Timestamp stamp) { return stamp >= held->stamp; });
-    EXPECT_EQ(timeline.Insert(*held, outputs).local_frames, later);
+    EXPECT_EQ(timeline.Insert(*held, newest.Hear(held->stamp), outputs).local_frames, later);
     held.reset();
     ++tried;
   }
