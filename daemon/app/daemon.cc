@@ -25,7 +25,13 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPopTimeout{20};
 constexpr std::chrono::seconds kHousekeeping{1};
-constexpr milliseconds kStatusAtLatest{1500};  // Where message time stands still.
+constexpr milliseconds kStatusAtLatest{1500};  // Where no message comes.
+constexpr milliseconds kSuspended{500};        // Between two turns of the loop.
+
+// Arrival on a clock that nobody sets.
+Timestamp ArrivalTime(Clock::time_point at) {
+  return Timestamp(std::chrono::duration_cast<Duration>(at.time_since_epoch()));
+}
 
 class Daemon {
  public:
@@ -57,7 +63,7 @@ class Daemon {
     LogCalibration();
     engine_.Start(outbox_);
     Publish();
-    last_list_ = last_status_ = last_housekeeping_ = Clock::now();
+    last_list_ = last_status_ = last_housekeeping_ = last_tick_ = Clock::now();
     while (!must_stop()) {
       if (const auto arrival = queue_.Pop(kPopTimeout)) Take(*arrival);
       OnTime(Clock::now());
@@ -93,12 +99,13 @@ class Daemon {
     queue_wait_.Add(started - arrival.arrived);
     outbox_.Clear();
     if (const auto* bytes = std::get_if<Arrival::Bytes>(&arrival.content)) {
-      engine_.OnMessage(arrival.channel, *bytes, arrival.received, outbox_);
+      engine_.OnMessage(arrival.channel, *bytes, ArrivalTime(arrival.arrived), outbox_);
     } else if (const auto* boxes = std::get_if<CameraDetections>(&arrival.content)) {
       image_to_boxes_.Add(arrival.looked);
-      engine_.OnDetections(arrival.channel, *boxes, outbox_);
+      engine_.OnDetections(arrival.channel, *boxes, ArrivalTime(arrival.arrived), outbox_);
     } else {
-      engine_.OnRefused(arrival.channel, std::get<Reason>(arrival.content));
+      engine_.OnRefused(arrival.channel, std::get<Reason>(arrival.content),
+                        ArrivalTime(arrival.arrived));
     }
     step_.Add(Clock::now() - started);
     Publish();
@@ -111,10 +118,16 @@ class Daemon {
     }
   }
 
-  // Lists go on without frames, marked stale; a status comes even where message time stands still.
+  // Lists go on without frames, marked stale; a status comes even where no message does.
   void OnTime(Clock::time_point now) {
+    // Who was not running cannot know what came meanwhile: it waits in the sockets.
+    if (now - last_tick_ > kSuspended) {
+      last_list_ = now;
+      stale_round_ = 0;
+    }
+    last_tick_ = now;
     const Duration stale_after = FromSeconds(config_.perception.timeline.stale_after_s);
-    if (now - last_list_ >= stale_after * (stale_round_ + 1)) {
+    if (!queue_.has_own() && now - last_list_ >= stale_after * (stale_round_ + 1)) {
       ++stale_round_;
       outbox_.Clear();
       engine_.PublishStale(std::chrono::duration_cast<Duration>(now - last_list_), outbox_);
@@ -123,6 +136,7 @@ class Daemon {
     }
     if (now - last_status_ >= kStatusAtLatest) {
       outbox_.Clear();
+      engine_.AdvanceTo(ArrivalTime(now));
       engine_.PublishStatus(outbox_);
       Publish();
     }
@@ -251,6 +265,7 @@ class Daemon {
   std::vector<bool> moved_;
   int stale_round_ = 0;
   Clock::time_point last_list_{};
+  Clock::time_point last_tick_{};
   Clock::time_point last_status_{};
   Clock::time_point last_housekeeping_{};
   // Last, so that they stop before anything they push into is gone.

@@ -43,6 +43,11 @@ class MessageQueue {
   /// The oldest of both queues by number; nullopt when none came in time.
   std::optional<Arrival> Pop(std::chrono::milliseconds timeout);
 
+  /// Something of an own sensor waits.
+  [[nodiscard]] bool has_own() const {
+    const std::lock_guard lock(mutex_);
+    return !own_.waiting.empty();
+  }
   [[nodiscard]] std::int64_t own_drops() const { return Drops(own_); }
   [[nodiscard]] std::int64_t bsm_drops() const { return Drops(bsm_); }
 

@@ -47,7 +47,7 @@ void Engine::OnMessage(std::string_view channel, std::span<const std::uint8_t> b
   has_lists_ = false;
   const auto index = decoder_.Find(channel);
   if (!index) return Refuse(Reason::kUnknownChannel);
-  watch_.Received(*index);
+  watch_.Received(*index, received);
   const auto decoded = decoder_.Decode(*index, bytes, received, refusals_);
   if (!decoded) return Refuse(decoded.reason());
   if (const auto* input = std::get_if<Input>(&*decoded)) {
@@ -58,11 +58,11 @@ void Engine::OnMessage(std::string_view channel, std::span<const std::uint8_t> b
 }
 
 void Engine::OnDetections(std::string_view image_channel, const CameraDetections& detections,
-                          Outbox& outbox) {
+                          Timestamp received, Outbox& outbox) {
   has_lists_ = false;
   const auto index = decoder_.Find(image_channel);
   if (!index) return Refuse(Reason::kUnknownChannel);
-  watch_.Received(*index);
+  watch_.Received(*index, received);
   const CameraConfig& camera =
       config_.perception.vehicle.cameras[static_cast<std::size_t>(detections.camera)];
   wire::EncodeDetections(detections, camera,
@@ -70,9 +70,9 @@ void Engine::OnDetections(std::string_view image_channel, const CameraDetections
   Take(*index, detections, outbox);
 }
 
-void Engine::OnRefused(std::string_view channel, Reason reason) {
+void Engine::OnRefused(std::string_view channel, Reason reason, Timestamp received) {
   has_lists_ = false;
-  if (const auto index = decoder_.Find(channel)) watch_.Received(*index);
+  if (const auto index = decoder_.Find(channel)) watch_.Received(*index, received);
   Refuse(reason);
 }
 
@@ -84,7 +84,7 @@ void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
     if (diagnostic.reason == Reason::kClockRestart) {
       watch_.Restart();
       monitor_.Restart();
-      last_status_.reset();
+      published_ = {};
     }
     if (RefusesTheInput(diagnostic.reason)) is_accepted = false;
   }
@@ -101,8 +101,7 @@ void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
   for (const BsmVerdict& verdict : outputs_.bsm_verdicts) {
     wire::EncodeVerdict(verdict, outbox.Add(config_.lcm.channels.bsm_verdict));
   }
-  const auto now = watch_.newest_own();
-  if (now && (!last_status_ || *now - *last_status_ >= kStatusPeriod)) PublishStatus(outbox);
+  if (!last_status_ || watch_.elapsed() - *last_status_ >= kStatusPeriod) PublishStatus(outbox);
 }
 
 void Engine::Monitor(const Input& input) {
@@ -113,18 +112,27 @@ void Engine::Monitor(const Input& input) {
 void Engine::PublishLists(Outbox& outbox) {
   const wire::ChannelNames& names = config_.lcm.channels;
   has_lists_ = true;
-  std::vector<std::uint8_t>& local = outbox.Add(names.tracks_local);
-  wire::EncodeList(outputs_.local, local);
-  digest_local_.Add(local);
-  std::vector<std::uint8_t>& priority = outbox.Add(names.tracks_priority);
-  wire::EncodeList(outputs_.priority, priority);
-  digest_priority_.Add(priority);
+  // The digests are of what the core made. A list older than a predicted copy that went out before
+  // it stays here: published time does not go back.
+  list_bytes_.clear();
+  wire::EncodeList(outputs_.local, list_bytes_);
+  digest_local_.Add(list_bytes_);
+  Send(names.tracks_local, outputs_.local.stamp, published_.local, outbox);
+  wire::EncodeList(outputs_.priority, list_bytes_);
+  digest_priority_.Add(list_bytes_);
+  Send(names.tracks_priority, outputs_.priority.stamp, published_.priority, outbox);
   if (outputs_.has_v2v_list) wire::EncodeList(outputs_.v2v, outbox.Add(names.tracks_v2v));
   status_.local_tracks = static_cast<int>(outputs_.local.tracks.size());
   status_.priority_tracks = static_cast<int>(outputs_.priority.tracks.size());
 }
 
-void Engine::PublishStale(Duration silence, Outbox& outbox) const {
+void Engine::Send(const std::string& channel, Timestamp stamp, Timestamp& newest, Outbox& outbox) {
+  if (stamp < newest) return;
+  newest = stamp;
+  outbox.Add(channel).assign(list_bytes_.begin(), list_bytes_.end());
+}
+
+void Engine::PublishStale(Duration silence, Outbox& outbox) {
   const Timestamp newest = perception_.newest_frame();
   if (newest == Timestamp{}) return;
   // A frame that is on its way carries an older stamp than its arrival. The copies keep that far
@@ -135,13 +143,15 @@ void Engine::PublishStale(Duration silence, Outbox& outbox) const {
   perception_.PredictedLists(newest + ahead, predicted);
   if (!predicted.has_lists) return;
   const wire::ChannelNames& names = config_.lcm.channels;
-  wire::EncodeList(predicted.local, outbox.Add(names.tracks_local));
-  wire::EncodeList(predicted.priority, outbox.Add(names.tracks_priority));
+  wire::EncodeList(predicted.local, list_bytes_);
+  Send(names.tracks_local, predicted.local.stamp, published_.local, outbox);
+  wire::EncodeList(predicted.priority, list_bytes_);
+  Send(names.tracks_priority, predicted.priority.stamp, published_.priority, outbox);
 }
 
 void Engine::PublishStatus(Outbox& outbox) {
-  last_status_ = watch_.newest_own();
-  status_.stamp = watch_.newest_own().value_or(Timestamp{});
+  last_status_ = watch_.elapsed();
+  status_.stamp = perception_.agreed_time().value_or(Timestamp{});
   ++status_.seq;
   watch_.Report(status_.inputs);
   status_.refusals = refusals_;
@@ -170,6 +180,7 @@ void Engine::PublishStatus(Outbox& outbox) {
   }
   std::vector<Notice> notices;
   perception_.CollectNotices(notices);
+  watch_.CollectNotices(notices);
   notices_.Update(notices, status_.stamp);
   status_.notices = notices_.in_force();
   status_.digest_inputs = watch_.accepted();

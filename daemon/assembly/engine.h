@@ -64,18 +64,20 @@ class Engine {
   void Start(Outbox& outbox);
 
   /// One received message. TRACKS_* after an own-sensor frame, MISBEHAVIOR, and V2VOUCH_STATUS when
-  /// a second of message time has passed.
+  /// a second of time of arrival has passed.
   void OnMessage(std::string_view channel, std::span<const std::uint8_t> bytes, Timestamp received,
                  Outbox& outbox);
   /// What our detector saw in a picture of channel `image_channel`: published and used.
   void OnDetections(std::string_view image_channel, const CameraDetections& detections,
-                    Outbox& outbox);
+                    Timestamp received, Outbox& outbox);
   /// A message refused on its way here, e.g. a picture that gave no detections.
-  void OnRefused(std::string_view channel, Reason reason);
+  void OnRefused(std::string_view channel, Reason reason, Timestamp received);
 
   /// Copies of the lists predicted by `silence` past the newest frame, marked stale; in no digest.
   /// Nothing before the first frame.
-  void PublishStale(Duration silence, Outbox& outbox) const;
+  void PublishStale(Duration silence, Outbox& outbox);
+  /// Where no message comes: it is `at` now, on the clock of `received`.
+  void AdvanceTo(Timestamp at) { watch_.AdvanceTo(at); }
   void PublishStatus(Outbox& outbox);
 
   void SetShellFigures(const ShellFigures& figures) { figures_ = figures; }
@@ -97,6 +99,7 @@ class Engine {
   void Take(std::size_t channel, const Input& input, Outbox& outbox);
   void Monitor(const Input& input);
   void PublishLists(Outbox& outbox);
+  void Send(const std::string& channel, Timestamp stamp, Timestamp& newest, Outbox& outbox);
   void Refuse(Reason reason) { ++refusals_[static_cast<std::size_t>(reason)]; }
 
   DaemonConfig config_;
@@ -111,7 +114,12 @@ class Engine {
   Sha256 digest_priority_;
   ShellFigures figures_;
   wire::Status status_;
-  std::optional<Timestamp> last_status_;
+  std::optional<Duration> last_status_;  // In time of arrival.
+  struct {
+    Timestamp local{};
+    Timestamp priority{};
+  } published_;  // Newest time that went out, stale copies included.
+  std::vector<std::uint8_t> list_bytes_;
   bool has_lists_ = false;
 };
 

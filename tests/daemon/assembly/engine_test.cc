@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 
@@ -68,6 +70,60 @@ Published RunAll(const std::vector<WireMessage>& messages) {
 
 std::uint64_t CountOf(const Published& run, Reason reason) {
   return run.refusals[static_cast<std::size_t>(reason)];
+}
+
+// A predicted copy went out before the frames that were on their way: their lists stay in, and
+// count in the digest all the same.
+TEST(Engine, PublishedTimeNeverGoesBackBehindAStaleCopy) {
+  Engine engine(DaemonConfig{});
+  Outbox outbox;
+  std::map<std::string, std::int64_t> newest;
+  int withheld = 0;
+  std::size_t count = 0;
+  for (const WireMessage& message : Messages()) {
+    outbox.Clear();
+    engine.OnMessage(message.channel, message.bytes, message.received, outbox);
+    bool has_local = false;
+    const auto check = [&] {
+      for (const auto& each : outbox.messages()) {
+        if (each.channel != "TRACKS_LOCAL" && each.channel != "TRACKS_PRIORITY") continue;
+        has_local = has_local || each.channel == "TRACKS_LOCAL";
+        const auto list = wire::Decode<track_list_t>(each.bytes);
+        ASSERT_TRUE(list);
+        EXPECT_GE(list->utime, newest[each.channel]);
+        newest[each.channel] = list->utime;
+      }
+    };
+    check();
+    if (engine.has_lists() && !has_local) ++withheld;
+    if (++count % 100 != 0) continue;
+    outbox.Clear();
+    engine.PublishStale(std::chrono::milliseconds(400), outbox);
+    check();
+  }
+  EXPECT_GT(withheld, 10);
+  EXPECT_EQ(engine.digest_local(), RunAll(Messages()).digest_local);
+}
+
+// One sensor's clock is a second ahead: its messages are refused, and the status names it.
+TEST(Engine, AClockThatIsOffIsNamedInTheStatusWhileItIs) {
+  std::vector<WireMessage> messages = Messages();
+  std::vector<Input> inputs = testing::MakeInputs(Drive());
+  for (Input& input : inputs) {
+    auto* scan = std::get_if<RadarScan>(&input);
+    if (scan != nullptr && scan->radar == 0) scan->stamp += std::chrono::seconds(1);
+  }
+  const auto wrong = testing::EncodeInputs(inputs, VehicleConfig{});
+  for (std::size_t i = 0; i < messages.size(); ++i) messages[i].bytes = wrong[i].bytes;
+  const Published run = RunAll(messages);
+  const auto status = wire::Decode<daemon_status_t>(run.published.at("V2VOUCH_STATUS").back());
+  ASSERT_TRUE(status);
+  const auto notice = std::ranges::find_if(
+      status->notices, [](const notice_t& each) { return each.name == "clock_ahead"; });
+  ASSERT_NE(notice, status->notices.end());
+  EXPECT_EQ(notice->channel, "RADAR_FRONT");
+  EXPECT_NEAR(notice->value, 1.0, 0.1);
+  for (const auto& input : status->inputs) EXPECT_EQ(input.is_silent, 0) << input.channel;
 }
 
 TEST(Engine, PublishesConfigurationAndCalibrationAtStart) {

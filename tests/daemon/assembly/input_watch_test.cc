@@ -21,6 +21,11 @@ wire::InputStatus ReportOf(InputWatch& watch, std::size_t channel) {
   return inputs.at(channel);
 }
 
+void Take(InputWatch& watch, std::size_t channel, double at_s, std::int64_t seq) {
+  watch.Received(channel, At(at_s));
+  watch.Accepted(channel, At(at_s), seq);
+}
+
 TEST(InputWatch, NothingHeardHasNoAgeAndIsSilent) {
   InputWatch watch(kChannels);
   const auto status = ReportOf(watch, 0);
@@ -31,43 +36,81 @@ TEST(InputWatch, NothingHeardHasNoAgeAndIsSilent) {
 
 TEST(InputWatch, LossesAreCountedAndLateOnesTakenBack) {
   InputWatch watch(kChannels);
-  for (const std::int64_t seq : {10, 11, 14, 15}) watch.Accepted(0, At(0.0), seq);
+  for (const int seq : {10, 11, 14, 15}) Take(watch, 0, 0.1 * seq, seq);
   EXPECT_EQ(ReportOf(watch, 0).gaps, 2);
-  watch.Accepted(0, At(0.0), 12);
+  Take(watch, 0, 1.2, 12);
   EXPECT_EQ(ReportOf(watch, 0).gaps, 1);
-  watch.Accepted(0, At(0.0), 16);
+  Take(watch, 0, 1.6, 16);
   EXPECT_EQ(ReportOf(watch, 0).gaps, 1);
 }
 
-TEST(InputWatch, SenderThatStartsAgainLostNothing) {
+TEST(InputWatch, ACounterThatStartsAgainOrStandsOrIsShortLostNothing) {
   InputWatch watch(kChannels);
-  watch.Accepted(0, At(0.0), 5'000'000);
-  watch.Accepted(0, At(0.1), 0);
-  watch.Accepted(0, At(0.2), 1);
+  Take(watch, 0, 0.0, 5'000'000);
+  Take(watch, 0, 0.1, 0);
+  Take(watch, 0, 0.2, 1);
   EXPECT_EQ(ReportOf(watch, 0).gaps, 0);
-  watch.Accepted(0, At(0.3), INT64_MAX);
+  Take(watch, 0, 0.3, INT64_MAX);
+  EXPECT_EQ(ReportOf(watch, 0).gaps, 0);
+  for (int i = 0; i < 40; ++i) Take(watch, 0, 1.0 + 0.05 * i, i % 4);
+  EXPECT_EQ(ReportOf(watch, 0).gaps, 0);
+  for (int i = 0; i < 40; ++i) Take(watch, 0, 4.0 + 0.05 * i, 0);
   EXPECT_EQ(ReportOf(watch, 0).gaps, 0);
 }
 
-TEST(InputWatch, RateIsPerSecondOfMessageTimeAndSilenceIsThreePeriods) {
+TEST(InputWatch, RateIsPerSecondOfArrivalAndSilenceIsThreePeriods) {
   InputWatch watch(kChannels);
-  watch.Accepted(0, At(0.0), 0);
+  Take(watch, 0, 0.0, 0);
   static_cast<void>(ReportOf(watch, 0));
-  for (int i = 1; i <= 20; ++i) watch.Accepted(0, At(0.05 * i), i);
-  watch.Accepted(1, At(0.2), 0);
+  Take(watch, 1, 0.0, 0);
+  for (int i = 1; i <= 20; ++i) Take(watch, 0, 0.05 * i, i);
   std::vector<wire::InputStatus> inputs;
   watch.Report(inputs);
   EXPECT_NEAR(inputs[0].rate_hz, 20.0, 1e-9);
   EXPECT_FALSE(inputs[0].is_silent);
-  EXPECT_NEAR(inputs[1].age_s, 0.8, 1e-9);
+  EXPECT_NEAR(inputs[1].age_s, 1.0, 1e-9);
+  watch.AdvanceTo(At(1.151));
+  EXPECT_TRUE(ReportOf(watch, 0).is_silent);
+}
 
+// A sensor whose stamps are an hour ahead neither looks dead nor makes the others look dead.
+TEST(InputWatch, StampsSayNothingAboutWhoIsAlive) {
   const std::array<wire::InputChannel, 2> two = {kChannels[0],
                                                  {"EGO", wire::InputKind::kEgoMotion, 0, 0.05}};
-  InputWatch both(two);
-  both.Accepted(0, At(0.0), 0);
-  both.Accepted(1, At(0.151), 0);
-  EXPECT_TRUE(ReportOf(both, 0).is_silent);
-  EXPECT_FALSE(ReportOf(both, 1).is_silent);
+  InputWatch watch(two);
+  for (int i = 0; i < 40; ++i) {
+    watch.Received(0, At(0.05 * i));
+    watch.Accepted(0, At(0.05 * i + 3600.0), i);
+    watch.Received(1, At(0.05 * i));  // Refused.
+  }
+  EXPECT_FALSE(ReportOf(watch, 0).is_silent);
+  EXPECT_FALSE(ReportOf(watch, 1).is_silent);
+  EXPECT_NEAR(ReportOf(watch, 1).age_s, 0.0, 1e-9);
+}
+
+TEST(InputWatch, WhoIsSilentForASecondIsWorthANotice) {
+  InputWatch watch(kChannels);
+  Take(watch, 1, 0.0, 0);
+  std::vector<Notice> notices;
+  watch.CollectNotices(notices);
+  EXPECT_TRUE(notices.empty());
+  watch.AdvanceTo(At(1.5));  // The radar was never heard.
+  watch.CollectNotices(notices);
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0].kind, NoticeKind::kInputSilent);
+  EXPECT_EQ(notices[0].subject, (NoticeSubject{NoticeSubject::Kind::kRadar, 0}));
+  EXPECT_NEAR(notices[0].value, 1.5, 1e-9);
+}
+
+// The host's clock was set while a log was recorded.
+TEST(InputWatch, ArrivalThatLeapsOrGoesBackDoesNoHarm) {
+  InputWatch watch(kChannels);
+  Take(watch, 0, 0.0, 0);
+  Take(watch, 0, -86400.0, 1);
+  Take(watch, 0, -86399.95, 2);
+  EXPECT_NEAR(ToSeconds(watch.elapsed()), 0.05, 1e-9);
+  Take(watch, 0, 3e7, 3);
+  EXPECT_LE(ToSeconds(watch.elapsed()), 0.05 + InputWatch::kLongestLeap_s);
 }
 
 }  // namespace
