@@ -14,7 +14,7 @@ constexpr std::array<Words, kNoticeKindCount> kWords = {{
     {"clock_behind", "synchronise this source's clock, or shorten its way to the daemon"},
     {"clock_stuck", "this source repeats one time of measurement; restart it"},
     {"input_silent", "is the source running, and does it publish on this channel?"},
-    {"over_budget", "this source sends more late data than is worth re-running"},
+    {"over_rate", "this source sends far more often than such a sensor measures; lower its rate"},
 }};
 
 static_assert(!kWords.back().name.empty(), "one entry per kind");

@@ -16,7 +16,7 @@ enum class NoticeKind : std::uint8_t {
   kClockBehind,  ///< The same, behind: its frames are too late to be used [s].
   kClockStuck,   ///< The source's stamps stand still while messages arrive [s of arrival].
   kInputSilent,  ///< Nothing has arrived from a configured own source for so long [s].
-  kOverBudget,   ///< Late data of the source beyond the work budget is refused [messages].
+  kOverRate,     ///< The source sends more messages than any such sensor; some are refused.
   kCount
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace v2vouch {
 namespace {
@@ -14,6 +15,12 @@ constexpr int kWeight = 2;
 constexpr double kLongestStride_s = 0.5;
 // So many rulings of one kind in a row are a condition, not an accident.
 constexpr int kRunThatTells = 3;
+// Later than that against the agreed time, ten times in a row, is worth telling: a network's delay
+// is less.
+constexpr double kLate_s = 0.5;
+constexpr double kLateEgo_s = 0.25;
+constexpr int kRunOfLate = 10;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // Rising stamps in a row, well before the newest, that are no reordering any more.
 constexpr int kRunBackOfEgo = 6;
 constexpr int kRunBack = 3;
@@ -168,8 +175,10 @@ SourceClock::Ruling SourceClock::Rule(Source& source, Timestamp stamp) {
   const Duration buffer = FromSeconds(config_.replay_buffer_s);
   if (stamp > *agreed_ + buffer) return Ruling::kAhead;
   if (stamp < *agreed_ - buffer) return Ruling::kBehind;
+  // Nothing works without ego motion, and a sample that is early hurts no frame.
+  const bool is_out = IsOut(source);
   if (!IsEgo(source.subject)) {
-    if (IsOut(source)) return Ruling::kAhead;
+    if (is_out) return Ruling::kAhead;
     if (is_strict_ && stamp > *agreed_ + FromSeconds(kSupported_s)) return Ruling::kAhead;
   }
   return IsOverRate(source, stamp) ? Ruling::kOverRate : Ruling::kAccept;
@@ -210,6 +219,8 @@ void SourceClock::Note(Source& source, Ruling ruling, double off_s) {
   source.run = ruling == source.last ? source.run + 1 : 1;
   source.last = ruling;
   source.off_s = off_s;
+  const double late_s = IsEgo(source.subject) ? kLateEgo_s : kLate_s;
+  source.run_late = off_s < -late_s ? source.run_late + 1 : 0;
 }
 
 // Claims stand, or the sources that have not spoken yet would be asked as if they agreed.
@@ -225,25 +236,33 @@ void SourceClock::Restart() {
   }
 }
 
-void SourceClock::CollectNotices(std::vector<Notice>& notices) const {
-  for (const Source& source : sources_) {
-    if (source.run < kRunThatTells) continue;
+std::optional<NoticeKind> SourceClock::NoticeOf(const Source& source) {
+  if (source.run >= kRunThatTells) {
     switch (source.last) {
       case Ruling::kAhead:
-        notices.push_back({NoticeKind::kClockAhead, source.subject, source.off_s});
-        break;
+        return NoticeKind::kClockAhead;
       case Ruling::kBehind:
-        notices.push_back({NoticeKind::kClockBehind, source.subject, -source.off_s});
-        break;
+        return NoticeKind::kClockBehind;
       case Ruling::kStuck:
-        notices.push_back({NoticeKind::kClockStuck, source.subject, -source.off_s});
-        break;
+        return NoticeKind::kClockStuck;
       case Ruling::kOverRate:
-        notices.push_back({NoticeKind::kOverBudget, source.subject});
-        break;
+        return NoticeKind::kOverRate;
       case Ruling::kAccept:
         break;
     }
+  }
+  if (source.run_late >= kRunOfLate) return NoticeKind::kClockBehind;
+  if (source.is_out) return NoticeKind::kClockAhead;
+  return std::nullopt;
+}
+
+void SourceClock::CollectNotices(std::vector<Notice>& notices) const {
+  for (const Source& source : sources_) {
+    const auto kind = NoticeOf(source);
+    if (!kind) continue;
+    const bool is_ahead = *kind == NoticeKind::kClockAhead;
+    const double off_s = is_ahead ? source.off_s : std::abs(source.off_s);
+    notices.push_back({*kind, source.subject, *kind == NoticeKind::kOverRate ? kNaN : off_s});
   }
 }
 

@@ -57,7 +57,8 @@ class SourceClock {
   /// them, because every other frame would have to be put in before them.
   void SetStrict(bool is_strict) { is_strict_ = is_strict; }
 
-  /// Sources whose clock is off, with how far.
+  /// Sources whose clock is off, with how far: those that are refused for it, and those that are
+  /// taken though they are always more than half a second late (ego motion: a quarter, or ahead).
   void CollectNotices(std::vector<Notice>& notices) const;
 
   static constexpr double kSilent_s = 0.4;  ///< No say in T from then on.
@@ -93,6 +94,7 @@ class SourceClock {
     // For notices: rulings in a row of one kind, and how far off the last one was.
     Ruling last = Ruling::kAccept;
     int run = 0;
+    int run_late = 0;  // Accepted or not: so late that it is worth telling.
     double off_s = 0.0;
   };
 
@@ -108,6 +110,7 @@ class SourceClock {
   bool IsOverRate(Source& source, Timestamp stamp);
   Ruling Rule(Source& source, Timestamp stamp);
   static void Note(Source& source, Ruling ruling, double off_s);
+  static std::optional<NoticeKind> NoticeOf(const Source& source);
   void Restart();
 
   TimelineConfig config_;

@@ -17,7 +17,7 @@ struct TimelineConfig {
   double interest_m = 250.0;   ///< Claims farther away can meet no track: listed, not followed.
   /// Frames that late data may cause to be run again, per second of message time. Beyond it late
   /// data are refused.
-  double rerun_budget = 3000.0;
+  double rerun_budget = 1500.0;
 
   template <class Archive>
   void Visit(Archive& a) {

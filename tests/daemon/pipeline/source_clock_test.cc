@@ -190,6 +190,20 @@ TEST(SourceClock, AFrameThatNobodySupportsIsRefused) {
   EXPECT_EQ(run.sources[0].refused, 0);
 }
 
+// Nothing works without ego motion: it is taken as far as the buffer goes, and named.
+TEST(SourceClock, EgoMotionWithinTheBufferIsTakenAndTold) {
+  for (const double off_s : {-0.6, -0.5, 0.4, 0.6}) {
+    std::vector<Sender> car = Car();
+    car[0].clock = [=](double t) { return t + off_s; };
+    const Heard run = Drive(car, 5.0);
+    for (const Count& count : run.sources) EXPECT_EQ(count.refused, 0) << off_s;
+    EXPECT_TRUE(Tells(run, off_s > 0.0 ? NoticeKind::kClockAhead : NoticeKind::kClockBehind,
+                      car[0].subject))
+        << off_s;
+    EXPECT_EQ(run.notices.size(), 1u) << off_s;
+  }
+}
+
 TEST(SourceClock, AStuckClockIsRefusedAndTold) {
   for (std::size_t wrong = 0; wrong < 6; ++wrong) {
     std::vector<Sender> car = Car();
