@@ -9,6 +9,7 @@
 
 #include "daemon/assembly/calibration_file.h"
 #include "daemon/base/angle.h"
+#include "daemon/base/did_you_mean.h"
 #include "daemon/config/bounds_text.h"
 #include "daemon/config/number_text.h"
 
@@ -73,9 +74,30 @@ Sensor* SensorCalled(std::vector<Sensor>& sensors, std::string_view name, std::s
     if (found != nullptr) problem = "two sensors of this vehicle are called so in lower case";
     found = &sensor;
   }
-  if (found == nullptr) problem = "this vehicle has no such sensor";
+  if (found == nullptr) {
+    std::vector<std::string> names;
+    for (const Sensor& sensor : sensors) names.push_back(SensorKey(sensor.name));
+    problem = "this vehicle has no such sensor" + DidYouMean(name, names);
+  }
   return problem.empty() ? found : nullptr;
 }
+
+// The last parts of all names that calibrations know.
+const std::vector<std::string> kKeys = {"x_m",
+                                        "y_m",
+                                        "z_m",
+                                        "yaw_deg",
+                                        "pitch_deg",
+                                        "roll_deg",
+                                        "range_offset_m",
+                                        "clock_offset_s",
+                                        "antenna_x_m",
+                                        "antenna_y_m",
+                                        "heading_bias_deg",
+                                        "speed_scale",
+                                        "yaw_rate_bias_degps",
+                                        "odometer_y_m",
+                                        "slip_s2pm"};
 
 struct Target {
   NumberFinder::Number number;
@@ -105,7 +127,7 @@ Target TargetOf(std::string_view name, VehicleConfig& vehicle) {
     if (camera != nullptr) target.number = NumberOf(*camera, key);
   }
   if (target.problem.empty() && !target.is_told_only && target.number.value == nullptr) {
-    target.problem = "unknown name";
+    target.problem = "unknown name" + DidYouMean(key, kKeys);
   }
   return target;
 }

@@ -55,6 +55,18 @@ class Checks {
   std::map<std::string, std::string> channels_;
 };
 
+// Calibrations spell sensors in lower case: "Front" and "FRONT" would share one entry.
+template <class Sensor>
+void CheckKeys(const std::string& list, const std::vector<Sensor>& sensors, Checks& checks) {
+  std::map<std::string, std::string> names;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const auto [entry, is_new] = names.emplace(SensorKey(sensors[i].name), sensors[i].name);
+    if (is_new || entry->second == sensors[i].name) continue;  // Equal ones share a channel.
+    checks.Problem(list + "[" + std::to_string(i) + "].name",
+                   sensors[i].name + ": differs from " + entry->second + " by its case only");
+  }
+}
+
 std::string KeyOf(const wire::InputChannel& channel) {
   const std::string index = "[" + std::to_string(channel.sensor) + "].name";
   switch (channel.kind) {
@@ -108,6 +120,8 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
   if (vehicle.cameras.size() > kMaxSensors) {
     checks.Problem("vehicle.cameras", "must be at most 32");
   }
+  CheckKeys("vehicle.radars", vehicle.radars, checks);
+  CheckKeys("vehicle.cameras", vehicle.cameras, checks);
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
     if (vehicle.radars[i].min_range_m >= vehicle.radars[i].max_range_m) {
       checks.Problem("vehicle.radars[" + std::to_string(i) + "].min_range_m",
@@ -134,10 +148,10 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
 }
 
 bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
-                      std::vector<std::string>& problems) {
+                      std::vector<std::string>& problems, std::vector<std::string>* notes) {
   if (!path.empty()) {
     const DetectorConfig before = config.detector;
-    config::Load(path, config, problems);
+    config::Load(path, config, problems, notes);
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     const auto beside = [&](std::string& file, const std::string& old) {
       if (!file.empty() && file != old) file = (folder / file).string();
@@ -156,6 +170,16 @@ bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
     }
   }
   return problems.empty();
+}
+
+void MakeAbsolute(const std::string& path, DaemonConfig& config) {
+  if (!config.calibration.empty()) {
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    config.calibration = (folder / config.calibration).lexically_normal().string();
+  }
+  for (std::string* file : {&config.detector.model, &config.detector.network}) {
+    if (!file->empty()) *file = std::filesystem::absolute(*file).lexically_normal().string();
+  }
 }
 
 std::string PrintDaemonConfig(const DaemonConfig& config) { return config::Print(config); }

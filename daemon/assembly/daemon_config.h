@@ -61,9 +61,15 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
                  std::vector<std::string>& problems);
 
 /// Defaults where `path` is empty. Files that the configuration names are looked for beside it; the
-/// calibration is read and applied. @return false with all problems named.
+/// calibration is read and applied. @return false with all problems named. `notes`, where given,
+/// takes what is no problem but worth telling, such as a shipped sensor that the file leaves out.
 bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
-                      std::vector<std::string>& problems);
+                      std::vector<std::string>& problems,
+                      std::vector<std::string>* notes = nullptr);
+
+/// What `config` of the file at `path` names beside it, by absolute paths: so printed, it means the
+/// same from any folder.
+void MakeAbsolute(const std::string& path, DaemonConfig& config);
 
 /// The effective configuration as YAML.
 std::string PrintDaemonConfig(const DaemonConfig& config);

@@ -4,44 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 
+#include "daemon/base/did_you_mean.h"
 #include "daemon/config/bounds_text.h"
 
 namespace v2vouch::config {
 namespace {
-
-// Levenshtein distance: how many letters to insert, delete or change.
-std::size_t Distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t change = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
-    }
-  }
-  return row.back();
-}
-
-// The known name meant, where one is near enough to be no accident.
-std::string Suggestion(std::string_view name, const std::vector<std::string_view>& known) {
-  constexpr std::size_t kLongest = 64;  // Distance is quadratic, and no key of ours is longer.
-  if (name.size() > kLongest) return "";
-  std::string_view best;
-  std::size_t best_distance = std::max<std::size_t>(2, name.size() / 3) + 1;
-  for (const std::string_view candidate : known) {
-    const std::size_t distance = Distance(name, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best.empty() ? "" : " (did you mean " + std::string(best) + "?)";
-}
 
 // For messages: short, and no control characters on the user's terminal.
 std::string Shown(const YamlNode& node) {
@@ -72,8 +40,8 @@ std::optional<T> ParseWhole(std::string_view text) {
 }  // namespace
 
 YamlReader::YamlReader(const YamlNode& node, std::string path, const std::string& name,
-                       std::vector<std::string>& problems)
-    : node_(node), path_(std::move(path)), name_(name), problems_(problems) {
+                       std::vector<std::string>& problems, std::vector<std::string>* notes)
+    : node_(node), path_(std::move(path)), name_(name), problems_(problems), notes_(notes) {
   if (node.type != YamlNode::Type::kMap)
     Report(node, path_, "must be a section of keys and values");
 }
@@ -106,7 +74,7 @@ void YamlReader::Finish() {
     as_value.type = YamlNode::Type::kScalar;
     as_value.text = key;
     problems_.push_back(name_ + ":" + std::to_string(node_.items[i].line) + ": " +
-                        PathOf(Shown(as_value)) + ": unknown key" + Suggestion(key, known_));
+                        PathOf(Shown(as_value)) + ": unknown key" + DidYouMean(key, known_));
   }
 }
 
@@ -191,13 +159,28 @@ bool YamlReader::IsList(const YamlNode& node, const std::string& path) {
   return false;
 }
 
+ListPlan YamlReader::Plan(const YamlNode& node, const std::string& path, const NamedList& rule,
+                          const std::vector<std::string>& there) {
+  ListPlan plan = PlanList(node, rule, there, [&](std::size_t item, const std::string& what) {
+    problems_.push_back(name_ + ":" + std::to_string(node.items[item].line) + ": " + path + "[" +
+                        std::to_string(item) + "]: " + what);
+  });
+  if (notes_ != nullptr && !plan.left_out.empty()) {
+    notes_->push_back(name_ + ":" + std::to_string(node.line) + ": " + path + " is a whole list: " +
+                      Listed(plan.left_out) + (plan.left_out.size() == 1 ? " is" : " are") +
+                      " not part of it ({name: " + plan.left_out.front() +
+                      ", remove: true} says so; `add: true` in a new one keeps the others)");
+  }
+  return plan;
+}
+
 void YamlReader::NotAmong(const YamlNode& node, const std::string& path,
                           const std::vector<std::string_view>& names) {
   std::string words = "must be one of";
   for (std::size_t i = 0; i < names.size(); ++i) {
     words += (i == 0 ? " " : ", ") + std::string(names[i]);
   }
-  if (node.type == YamlNode::Type::kScalar) words += Suggestion(node.text, names);
+  if (node.type == YamlNode::Type::kScalar) words += DidYouMean(node.text, names);
   Report(node, path, words);
 }
 

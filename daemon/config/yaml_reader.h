@@ -14,6 +14,7 @@
 
 #include "daemon/base/angle.h"
 #include "daemon/base/visit.h"
+#include "daemon/config/named_list.h"
 #include "daemon/config/yaml_node.h"
 
 namespace v2vouch::config {
@@ -33,13 +34,14 @@ inline constexpr bool kIsOptional<std::optional<T>> = true;
 ///
 ///     FILE:LINE: key.path = value: must be above 0, at most 10
 ///
-/// A key that is not there keeps its default. A list of structs replaces the default list, and its
-/// elements start from the struct's own defaults. An optional is filled where its key is there,
-/// starting from its type's own defaults.
+/// A key that is not there keeps its default. A list replaces the default list, and its elements
+/// start from the struct's own defaults; lists with names (named_list.h: the sensors) may change
+/// single elements instead. An optional is filled where its key is there, starting from its type's
+/// own defaults.
 class YamlReader {
  public:
   YamlReader(const YamlNode& node, std::string path, const std::string& name,
-             std::vector<std::string>& problems);
+             std::vector<std::string>& problems, std::vector<std::string>* notes = nullptr);
 
   template <class T>
   void Field(const char* key, T& value, const Bounds& bounds = {}) {
@@ -100,14 +102,54 @@ class YamlReader {
       Read(node, path, value.emplace(), bounds);
     } else if constexpr (kIsVector<T>) {
       if (!IsList(node, path)) return;
+      if (const NamedList* rule = NamedListAt(path)) return ReadNamed(node, path, *rule, value);
       value.clear();
       for (std::size_t i = 0; i < node.items.size(); ++i) {
         Read(node.items[i], path + "[" + std::to_string(i) + "]", value.emplace_back(), bounds);
       }
     } else {
-      YamlReader reader(node, path, name_, problems_);
-      value.Visit(reader);
-      reader.Finish();
+      ReadSection(node, path, value, false);
+    }
+  }
+
+  template <class T>
+  void ReadSection(const YamlNode& node, const std::string& path, T& value, bool is_named) {
+    YamlReader reader(node, path, name_, problems_, notes_);
+    if (is_named) {
+      reader.Ignore("add");
+      reader.Ignore("remove");
+    }
+    value.Visit(reader);
+    reader.Finish();
+  }
+
+  template <class Item>
+  void ReadNamed(const YamlNode& node, const std::string& path, const NamedList& rule,
+                 std::vector<Item>& values) {
+    if constexpr (std::is_class_v<Item> && !std::is_same_v<Item, std::string>) {
+      constexpr bool kHasName = requires(Item item) { std::string(item.name); };
+      std::vector<std::string> there;
+      if constexpr (kHasName) {
+        for (const Item& item : values) there.push_back(item.name);
+      }
+      const ListPlan plan = Plan(node, path, rule, there);
+      if (!plan.keeps_others) values.clear();
+      for (const ListPlan::Step& step : plan.steps) {
+        Item* item = nullptr;
+        if constexpr (kHasName) {
+          const auto is_it = [&](const Item& each) { return each.name == step.name; };
+          if (step.action == ListPlan::Action::kRemove) {
+            std::erase_if(values, is_it);
+            continue;
+          }
+          for (Item& each : values) {
+            if (is_it(each)) item = &each;
+          }
+        }
+        if (item == nullptr) item = &values.emplace_back();
+        ReadSection(node.items[step.item], path + "[" + std::to_string(step.item) + "]", *item,
+                    rule.is_merged);
+      }
     }
   }
 
@@ -118,6 +160,8 @@ class YamlReader {
                                         const Bounds& bounds, std::int64_t lowest,
                                         std::uint64_t highest);
   void ReadText(const YamlNode& node, const std::string& path, std::string& value);
+  ListPlan Plan(const YamlNode& node, const std::string& path, const NamedList& rule,
+                const std::vector<std::string>& there);
   bool IsList(const YamlNode& node, const std::string& path);
   void NotAmong(const YamlNode& node, const std::string& path,
                 const std::vector<std::string_view>& names);
@@ -127,18 +171,20 @@ class YamlReader {
   std::string path_;
   const std::string& name_;
   std::vector<std::string>& problems_;
+  std::vector<std::string>* notes_;
   std::vector<std::string_view> known_;
 };
 
 /// Reads `text` into `settings`. @return false with problems added; what was good is in `settings`.
+/// `notes`, where given, takes what is no problem but worth a line.
 template <class T>
 bool Parse(std::string_view text, const std::string& name, T& settings,
-           std::vector<std::string>& problems) {
+           std::vector<std::string>& problems, std::vector<std::string>* notes = nullptr) {
   const std::size_t before = problems.size();
   const auto root = ParseYaml(text, name, problems);
   if (!root) return false;
   if (root->type != YamlNode::Type::kEmpty) {
-    YamlReader reader(*root, "", name, problems);
+    YamlReader reader(*root, "", name, problems, notes);
     settings.Visit(reader);
     reader.Finish();
   }
@@ -147,9 +193,10 @@ bool Parse(std::string_view text, const std::string& name, T& settings,
 
 /// The same from a file.
 template <class T>
-bool Load(const std::string& path, T& settings, std::vector<std::string>& problems) {
+bool Load(const std::string& path, T& settings, std::vector<std::string>& problems,
+          std::vector<std::string>* notes = nullptr) {
   const auto text = ReadFile(path, problems);
-  return text && Parse(*text, path, settings, problems);
+  return text && Parse(*text, path, settings, problems, notes);
 }
 
 }  // namespace v2vouch::config

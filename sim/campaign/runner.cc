@@ -183,6 +183,19 @@ bool WriteConfig(const std::filesystem::path& from, const std::filesystem::path&
   try {
     YAML::Node root = from.empty() ? YAML::Node() : YAML::LoadFile(from.string());
     root["v2v"]["message_verdicts"] = true;
+    // What the file names beside it is not beside its copy.
+    const std::filesystem::path folder =
+        from.empty() ? from : std::filesystem::absolute(from).parent_path();
+    const auto settle = [&](YAML::Node section, const char* key) {
+      if (!section.IsMap() || !section[key] || !section[key].IsScalar()) return;
+      const std::string file = section[key].as<std::string>();
+      if (!file.empty()) section[key] = (folder / file).lexically_normal().string();
+    };
+    settle(root, "calibration");
+    if (root["detector"]) {
+      settle(root["detector"], "model");
+      settle(root["detector"], "network");
+    }
     std::ofstream file(to);
     file << root << "\n";
     file.close();

@@ -116,6 +116,133 @@ TEST(DaemonConfig, RangesTheWrongWayRoundAreProblems) {
                                                        HasSubstr("vehicle.cameras[0].distortion")));
 }
 
+// Loads a file with this text over the shipped vehicle.
+struct Loaded {
+  explicit Loaded(const std::string& text) {
+    const std::string path = testing::TempDir() + "sensors.yaml";
+    std::ofstream(path) << text;
+    is_good = LoadDaemonConfig(path, config, problems, &notes);
+  }
+  [[nodiscard]] std::vector<std::string> radars() const {
+    std::vector<std::string> names;
+    for (const auto& radar : config.perception.vehicle.radars) names.push_back(radar.name);
+    return names;
+  }
+  [[nodiscard]] const RadarConfig& radar(std::size_t i) const {
+    return config.perception.vehicle.radars.at(i);
+  }
+  DaemonConfig config;
+  std::vector<std::string> problems;
+  std::vector<std::string> notes;
+  bool is_good = false;
+};
+
+constexpr char kRear[] = "x_m: -0.9, y_m: 0, yaw_deg: 180, half_fov_deg: 60, max_range_m: 70";
+
+TEST(DaemonConfigSensors, OneKeyOfOneSensorChangesThatKeyAlone) {
+  const Loaded loaded("vehicle: {radars: [{name: FRONT_LEFT, yaw_deg: 56}]}");
+  ASSERT_TRUE(loaded.is_good) << testing::PrintToString(loaded.problems);
+  EXPECT_THAT(loaded.radars(), testing::ElementsAre("FRONT", "FRONT_LEFT", "FRONT_RIGHT"));
+  DaemonConfig wanted;
+  wanted.perception.vehicle.radars[1].yaw_rad = FromDegrees(56.0);
+  EXPECT_EQ(PrintDaemonConfig(loaded.config), PrintDaemonConfig(wanted));
+  EXPECT_THAT(loaded.notes, IsEmpty());
+
+  const Loaded camera("vehicle: {cameras: [{source: image}]}");  // There is only one.
+  ASSERT_TRUE(camera.is_good) << testing::PrintToString(camera.problems);
+  EXPECT_EQ(camera.config.perception.vehicle.cameras.at(0).source, CameraSource::kImage);
+  EXPECT_EQ(camera.radars().size(), 3u);
+}
+
+TEST(DaemonConfigSensors, ANewSensorMustBeCompleteAndNamesWhatItLacks) {
+  const Loaded bare("vehicle: {radars: [{name: REAR, yaw_deg: 180, x_m: -1}]}");
+  EXPECT_FALSE(bare.is_good);
+  EXPECT_THAT(bare.problems,
+              testing::ElementsAre(HasSubstr("vehicle.radars[0]: lacks y_m, half_fov_deg, "
+                                             "max_range_m: REAR is new, and a new one must be "
+                                             "complete; there are FRONT, FRONT_LEFT")));
+  const Loaded typo("vehicle: {radars: [{name: FORNT, yaw_deg: 1}]}");
+  EXPECT_THAT(typo.problems, testing::ElementsAre(HasSubstr("(did you mean FRONT?)")));
+  const Loaded camera("vehicle: {cameras: [{name: SIDE, x_m: 1}]}");
+  EXPECT_THAT(camera.problems,
+              testing::ElementsAre(HasSubstr("lacks y_m, z_m, yaw_deg, image_wid")));
+  const Loaded mixed(std::string("vehicle: {radars: [{name: FRONT, yaw_deg: 1}, {name: REAR, ") +
+                     kRear + "}]}");
+  EXPECT_THAT(mixed.problems, testing::ElementsAre(HasSubstr("say `add: true`")));
+  const Loaded added(std::string("vehicle: {radars: [{name: REAR, add: true, ") + kRear + "}]}");
+  ASSERT_TRUE(added.is_good) << testing::PrintToString(added.problems);
+  EXPECT_THAT(added.radars(), testing::ElementsAre("FRONT", "FRONT_LEFT", "FRONT_RIGHT", "REAR"));
+  EXPECT_EQ(added.radar(3).max_range_m, 70.0);
+}
+
+TEST(DaemonConfigSensors, RemovingIsExplicitAndNamesWhatThereIs) {
+  const Loaded removed("vehicle: {radars: [{name: FRONT_LEFT, remove: true}]}");
+  ASSERT_TRUE(removed.is_good) << testing::PrintToString(removed.problems);
+  EXPECT_THAT(removed.radars(), testing::ElementsAre("FRONT", "FRONT_RIGHT"));
+  EXPECT_THAT(Loaded("vehicle: {radars: [{name: REAR, remove: true}]}").problems,
+              testing::ElementsAre(HasSubstr("no REAR to remove; there are FRONT, FRONT_LEFT")));
+  EXPECT_THAT(Loaded("vehicle: {radars: [{name: FRONT, remove: yes}]}").problems,
+              testing::ElementsAre(HasSubstr("remove = yes: must be true or false")));
+  EXPECT_THAT(Loaded("vehicle: {radars: [{name: FRONT, remove: true, x_m: 1}]}").problems,
+              testing::ElementsAre(HasSubstr("no other key belongs here")));
+  const Loaded none("vehicle: {radars: []}");
+  EXPECT_TRUE(none.is_good);
+  EXPECT_THAT(none.radars(), IsEmpty());
+}
+
+TEST(DaemonConfigSensors, TwiceNamelessAndCaseOnlyAreProblems) {
+  EXPECT_THAT(Loaded("vehicle: {radars: [{name: FRONT, x_m: 1}, {name: FRONT, y_m: 1}]}").problems,
+              testing::ElementsAre(HasSubstr("FRONT stands here a second time, first at [0]")));
+  EXPECT_THAT(Loaded("vehicle: {radars: [{yaw_deg: 1}]}").problems,
+              testing::ElementsAre(HasSubstr("vehicle.radars[0]: has no name")));
+  EXPECT_THAT(Loaded(std::string("vehicle: {radars: [{name: Rear, ") + kRear + "}, {name: REAR, " +
+                     kRear + "}]}")
+                  .problems,
+              testing::ElementsAre(HasSubstr("differs from Rear by its case only")));
+  EXPECT_THAT(Loaded("detector: {classes: [{id: 2, class: car}, {id: 2, class: bus}]}").problems,
+              testing::ElementsAre(HasSubstr("2 stands here a second time")));
+  EXPECT_THAT(Loaded("detector: {classes: [{id: 2}]}").problems,
+              testing::ElementsAre(HasSubstr("lacks class")));
+}
+
+TEST(DaemonConfigSensors, AWholeListIsTheVehicleAndSaysWhatItLeavesOut) {
+  const Loaded whole(std::string("vehicle: {radars: [{name: FRONT, ") + kRear + "}]}");
+  ASSERT_TRUE(whole.is_good) << testing::PrintToString(whole.problems);
+  EXPECT_THAT(whole.radars(), testing::ElementsAre("FRONT"));
+  EXPECT_EQ(whole.radar(0).azimuth_sigma_rad, RadarConfig{}.azimuth_sigma_rad);
+  EXPECT_THAT(whole.notes, testing::ElementsAre(HasSubstr("FRONT_LEFT, FRONT_RIGHT are not part")));
+  const Loaded said(std::string("vehicle: {radars: [{name: FRONT, ") + kRear +
+                    "}, {name: FRONT_LEFT, remove: true}, {name: FRONT_RIGHT, remove: true}]}");
+  EXPECT_THAT(said.radars(), testing::ElementsAre("FRONT"));
+  EXPECT_THAT(said.notes, IsEmpty());
+}
+
+TEST(DaemonConfigSensors, WhatIsPrintedLoadsAsTheSame) {
+  for (const std::string& text :
+       {std::string("vehicle: {radars: [{name: FRONT_LEFT, yaw_deg: 56}]}"),
+        std::string("vehicle: {radars: [{name: FRONT, remove: true}], cameras: []}"),
+        std::string("vehicle: {radars: [{name: REAR, ") + kRear + "}]}",
+        std::string("vehicle: {radars: [{name: REAR, add: true, ") + kRear + "}]}"}) {
+    const Loaded first(text);
+    ASSERT_TRUE(first.is_good) << testing::PrintToString(first.problems);
+    const std::string printed = PrintDaemonConfig(first.config);
+    const Loaded second(printed);
+    EXPECT_TRUE(second.is_good) << testing::PrintToString(second.problems);
+    EXPECT_EQ(PrintDaemonConfig(second.config), printed);
+  }
+}
+
+TEST(DaemonConfigSensors, MadeAbsoluteItMeansTheSameFromAnyFolder) {
+  DaemonConfig config;
+  config.calibration = "cal/mine.yaml";
+  config.detector.model = "/net.onnx";
+  MakeAbsolute("/cars/vehicle.yaml", config);
+  EXPECT_EQ(config.calibration, "/cars/cal/mine.yaml");
+  EXPECT_EQ(config.detector.model, "/net.onnx");
+  MakeAbsolute("/elsewhere/vehicle.yaml", config);
+  EXPECT_EQ(config.calibration, "/cars/cal/mine.yaml");
+}
+
 TEST(DaemonConfig, CalibrationIsReadFromTheFileOwnFolderAndApplied) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "calibrated";
   std::filesystem::create_directories(folder);

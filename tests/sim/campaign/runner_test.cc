@@ -179,6 +179,15 @@ TEST_F(Runner, ConfigurationsGainTheVerdictsAndKeepTheRest) {
   const std::string text(std::istreambuf_iterator<char>(file), {});
   EXPECT_THAT(text, AllOf(HasSubstr("length_m: 5"), HasSubstr("max_age_s: 1.0"),
                           HasSubstr("message_verdicts: true")));
+  // What stands beside the file does not stand beside its copy.
+  std::ofstream(from)
+      << "calibration: cal/mine.yaml\ndetector: {model: net.onnx, network: /a.cfg}\n";
+  ASSERT_TRUE(WriteConfig(from, to, problem)) << problem;
+  std::ifstream copy(to);
+  const std::string text(std::istreambuf_iterator<char>(copy), {});
+  EXPECT_THAT(text, testing::HasSubstr("calibration: " + (folder_ / "cal/mine.yaml").string()));
+  EXPECT_THAT(text, testing::HasSubstr("model: " + (folder_ / "net.onnx").string()));
+  EXPECT_THAT(text, testing::HasSubstr("network: /a.cfg"));
   EXPECT_TRUE(WriteConfig("", to, problem));
   EXPECT_FALSE(WriteConfig(folder_ / "nosuch.yaml", to, problem));
   EXPECT_THAT(problem, HasSubstr("nosuch.yaml"));
