@@ -3,7 +3,6 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <iostream>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "daemon/app/daemon.h"
 #include "daemon/detection/network_detector.h"
 #include "daemon/io/lcm_bus.h"
+#include "daemon/program/command_line.h"
 
 namespace {
 
@@ -67,24 +67,19 @@ int main(int argc, char** argv) {
   std::string v2v_url;
   bool prints_config = false;
   CLI::App app("Tells the car which vehicles are around it, and which it may rely on.");
-  app.name("v2vouchd");
   app.footer(kExamples);
-  app.set_version_flag("--version", std::string("v2vouchd ") + V2VOUCH_VERSION);
   app.add_option("--config", config_path, "Vehicle description (default: the shipped vehicle)");
   app.add_option("-l,--lcm-url", url,
                  "LCM URL (default: lcm.url of the configuration, else "
                  "LCM_DEFAULT_URL)");
   app.add_option("--v2v-lcm-url", v2v_url, "LCM URL of BSMs, on a port of its own");
   app.add_flag("--print-config", prints_config, "Print the effective configuration and end");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouchd", argc, argv)) return *code;
 
   v2vouch::DaemonConfig config;
   std::vector<std::string> problems;
-  v2vouch::LoadDaemonConfig(config_path, config, problems);
+  std::vector<std::string> notes;
+  v2vouch::LoadDaemonConfig(config_path, config, problems, &notes);
   if (!url.empty()) config.lcm.url = url;
   if (!v2v_url.empty()) config.lcm.v2v_url = v2v_url;
   for (const std::string& given : {config.lcm.url, config.lcm.v2v_url}) {
@@ -95,7 +90,9 @@ int main(int argc, char** argv) {
   if (problems.empty() && !prints_config) detector = LoadDetector(config, problems);
   for (const std::string& problem : problems) std::cerr << problem << '\n';
   if (!problems.empty()) return 2;
+  for (const std::string& note : notes) std::cerr << "note: " << note << '\n';
   if (prints_config) {
+    v2vouch::MakeAbsolute(config_path, config);
     std::cout << v2vouch::PrintDaemonConfig(config);
     return 0;
   }
