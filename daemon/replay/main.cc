@@ -2,11 +2,11 @@
 // v2vouch-replay: a log through the same core as the daemon's.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 
+#include "daemon/program/command_line.h"
 #include "daemon/replay/replay.h"
 
 namespace {
@@ -21,8 +21,8 @@ time of the event that caused it. The same log and configuration give the same b
 No network runs: for a camera with source: image, what was recorded on CAMERA_<NAME>_DETECTED is the
 input; v2vouch-detect --log puts that into a log of pictures.
 
-Exit codes: 0 done; 1 the log could not be read or written, or the run was stopped;
-2 usage or configuration.)";
+Exit codes: 0 done; 1 the log could not be read or written, the run was stopped, or it made no list
+(nothing on this vehicle's channels, nothing accepted, no ego motion); 2 usage or configuration.)";
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -44,26 +44,23 @@ int main(int argc, char** argv) {
   bool wants_json = false;
   CLI::App app(
       "Runs a recorded log through the perception core, as fast as it can, without sockets.");
-  app.name("v2vouch-replay");
   app.footer(kExamples);
-  app.set_version_flag("--version", std::string("v2vouch-replay ") + V2VOUCH_VERSION);
   app.add_option("IN", in, "LCM log to read")->required();
   app.add_option("--out", out, "LCM log to write")->required();
   app.add_option("--config", config_path, "Vehicle description (default: the shipped vehicle)");
   app.add_flag("--json", wants_json, "Print the figures as JSON");
   app.add_option("-l,--lcm-url", lcm_url, "Taken like every program's; replay opens no socket");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-replay", argc, argv)) return *code;
 
   v2vouch::DaemonConfig config;
   std::vector<std::string> problems;
-  if (!v2vouch::LoadDaemonConfig(config_path, config, problems)) {
+  std::vector<std::string> notes;
+  if (!v2vouch::LoadDaemonConfig(config_path, config, problems, &notes)) {
     for (const std::string& problem : problems) std::cerr << problem << '\n';
     return 2;
   }
+
+  for (const std::string& note : notes) std::cerr << "v2vouch-replay: note: " << note << '\n';
 
   std::signal(SIGINT, RequestStop);
   std::signal(SIGTERM, RequestStop);
@@ -76,5 +73,11 @@ int main(int argc, char** argv) {
     return 1;
   }
   std::cout << (wants_json ? v2vouch::JsonReport(result) : v2vouch::TextReport(result));
-  return 0;
+  for (const std::string& note : result.verdict.notes) {
+    std::cerr << "v2vouch-replay: note: " << note << '\n';
+  }
+  for (const std::string& problem : result.verdict.problems) {
+    std::cerr << "v2vouch-replay: " << in << ": " << problem << '\n';
+  }
+  return result.verdict.problems.empty() ? 0 : 1;
 }

@@ -118,6 +118,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
   Engine engine(config);
   Outbox outbox;
   LogEvent event;
+  for (const auto& input : engine.channels()) result.channels[input.name].is_input = true;
   Timestamp first{};
   Timestamp last{};
   while (reader->Next(event)) {
@@ -138,6 +139,8 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
       ++result.old_outputs;
       continue;
     }
+    ChannelFigures& channel = result.channels[event.channel];
+    ++channel.received;
     if (writer) writer->Write(event.received, event.channel, event.bytes);
     if (!engine.decoder().Find(event.channel)) {
       ++result.copied;
@@ -145,9 +148,16 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
     }
     ++result.inputs;
     outbox.Clear();
+    const std::int64_t accepted_before = engine.accepted();
+    const ReasonCounts refused_before = engine.refusals();
     const auto before = SteadyClock::now();
     engine.OnMessage(event.channel, event.bytes, event.received, outbox);
     result.step_us.push_back(Microseconds(SteadyClock::now() - before));
+    channel.accepted += engine.accepted() - accepted_before;
+    for (std::size_t i = 0; i < kReasonCount; ++i) {
+      const std::uint64_t more = engine.refusals()[i] - refused_before[i];
+      if (more > 0) channel.refused[static_cast<Reason>(i)] += static_cast<std::int64_t>(more);
+    }
     if (engine.has_lists()) ++result.lists;
     Note(engine.TakeNoticeChanges(), result.notices);
     WriteAll(outbox, event.received, writer.get());
@@ -158,6 +168,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
   result.unseen_pictures = unseen.count();
   result.accepted = engine.accepted();
   result.refused = engine.refusals();
+  result.verdict = JudgeChannels(result.channels, result.lists, config);
   result.digest_local = engine.digest_local();
   result.digest_priority = engine.digest_priority();
   return !writer || writer->Close(error);

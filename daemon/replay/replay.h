@@ -8,6 +8,7 @@
 
 #include "daemon/assembly/daemon_config.h"
 #include "daemon/base/reason.h"
+#include "daemon/replay/channel_table.h"
 #include "daemon/wire/status.h"
 
 namespace v2vouch {
@@ -35,6 +36,8 @@ struct ReplayResult {
   std::vector<double> step_us;  ///< Wall time of each input, decode to encode.
   ReasonCounts refused{};
   std::vector<ReplayedNotice> notices;  ///< In order of their first beginning.
+  ChannelTable channels;
+  LogVerdict verdict;
   std::string digest_local;
   std::string digest_priority;
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "daemon/replay/replay.h"
@@ -9,10 +11,12 @@
 namespace v2vouch {
 namespace {
 
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
 struct Quantiles {
-  double p50 = 0.0;
-  double p99 = 0.0;
-  double max = 0.0;
+  double p50 = kNone;
+  double p99 = kNone;
+  double max = kNone;
 };
 
 // Nearest-rank quantiles.
@@ -26,8 +30,10 @@ Quantiles QuantilesOf(std::vector<double> values) {
   return {rank(0.50), rank(0.99), values.back()};
 }
 
+// "none" for a statistic of nothing.
 std::string Line(const char* format, double value) {
   char text[160];
+  if (std::isnan(value)) return std::string(format, std::strcspn(format, "%")) + "none\n";
   std::snprintf(text, sizeof(text), format, value);
   return std::string(text) + "\n";
 }
@@ -55,6 +61,16 @@ std::string JsonReport(const ReplayResult& result) {
                        {"since_utime", ToMicros(each.notice.since)},
                        {"times", each.times}});
   }
+  nlohmann::ordered_json channels = nlohmann::ordered_json::object();
+  for (const auto& [name, figures] : result.channels) {
+    nlohmann::ordered_json of_channel = {{"input", figures.is_input},
+                                         {"received", figures.received}};
+    if (figures.is_input) of_channel["accepted"] = figures.accepted;
+    for (const auto& [reason, count] : figures.refused) {
+      of_channel["refused"][std::string(ReasonName(reason))] = count;
+    }
+    channels[name] = std::move(of_channel);
+  }
   const nlohmann::ordered_json report = {
       {"events", result.events},
       {"inputs", result.inputs},
@@ -70,6 +86,9 @@ std::string JsonReport(const ReplayResult& result) {
       {"step_us", {{"p50", step.p50}, {"p99", step.p99}, {"max", step.max}}},
       {"refused", refused},
       {"notices", notices},
+      {"channels", channels},
+      {"problems", result.verdict.problems},
+      {"notes", result.verdict.notes},
       {"digest_local", result.digest_local},
       {"digest_priority", result.digest_priority}};
   return report.dump() + "\n";

@@ -17,6 +17,12 @@ namespace v2vouch {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 using testing::WireMessage;
 
 class ReplayTest : public ::testing::Test {
@@ -129,6 +135,68 @@ TEST_F(ReplayTest, FilesThatCannotBeUsedSayWhy) {
   EXPECT_FALSE(Replay(in, in, DaemonConfig{}, go_on, result, error));
   EXPECT_THAT(error, ::testing::HasSubstr("is the log that is being read"));
   EXPECT_FALSE(Replay(in, Path("no/folder/out.lcm"), DaemonConfig{}, go_on, result, error));
+}
+
+// The drive with channels renamed; "" leaves a message out.
+std::vector<WireMessage> Renamed(const std::map<std::string, std::string>& names) {
+  std::vector<WireMessage> messages;
+  for (WireMessage message : Drive()) {
+    const auto found = names.find(message.channel);
+    if (found != names.end()) message.channel = found->second;
+    if (!message.channel.empty()) messages.push_back(message);
+  }
+  return messages;
+}
+
+TEST_F(ReplayTest, AMistypedChannelIsToldWithTheOneThatWasMeant) {
+  const ReplayResult result = RunLog(Save("in.lcm", Renamed({{"RADAR_FRONT", "RADAR_FORNT"}})), "");
+  EXPECT_THAT(result.verdict.problems, IsEmpty());  // The others make lists.
+  EXPECT_THAT(
+      result.verdict.notes,
+      AllOf(Contains(AllOf(HasSubstr("RADAR_FORNT: "), HasSubstr("no such sensor"),
+                           HasSubstr("(did you mean RADAR_FRONT?)"))),
+            Contains(HasSubstr("RADAR_FRONT: not in the log (did you mean RADAR_FORNT?)"))));
+  EXPECT_GT(result.lists, 0);
+  EXPECT_THAT(RunLog(Save("good.lcm", Drive()), "").verdict.notes,
+              Not(Contains(HasSubstr("RADAR"))));
+}
+
+TEST_F(ReplayTest, ALogOfWhichNothingComesIsAProblemThatSaysWhy) {
+  const auto problems = [&](const std::vector<WireMessage>& messages) {
+    const ReplayResult result = RunLog(Save("in.lcm", messages), "");
+    EXPECT_EQ(result.lists, 0);
+    return result.verdict.problems;
+  };
+  std::vector<WireMessage> foreign = Drive();
+  for (WireMessage& message : foreign) message.channel = "LIDAR_TOP";
+  EXPECT_THAT(problems(foreign),
+              ElementsAre(AllOf(HasSubstr("no event is on a channel"), HasSubstr("EGO_MOTION"),
+                                HasSubstr("LIDAR_TOP"))));
+  EXPECT_THAT(problems(Renamed({{"EGO_MOTION", "EGOMOTION"}})),
+              Contains(AllOf(HasSubstr("without an accepted message on EGO_MOTION"),
+                             HasSubstr("did you mean EGOMOTION?"))));
+  std::vector<WireMessage> broken = Drive();
+  for (WireMessage& message : broken) message.bytes.resize(5);
+  EXPECT_THAT(problems(broken), Contains(AllOf(HasSubstr("none of"), HasSubstr("was accepted"),
+                                               HasSubstr("too_short"))));
+  EXPECT_THAT(problems(Renamed({{"RADAR_FRONT", ""},
+                                {"RADAR_FRONT_LEFT", ""},
+                                {"RADAR_FRONT_RIGHT", ""},
+                                {"CAMERA_FRONT", ""}})),
+              Contains(HasSubstr("no scan or picture")));
+}
+
+TEST_F(ReplayTest, ACameraWhoseOtherChannelIsFilledIsTold) {
+  const ReplayResult result =
+      RunLog(Save("in.lcm", Renamed({{"CAMERA_FRONT", "CAMERA_FRONT_DETECTED"}})), "");
+  EXPECT_THAT(result.verdict.notes, Contains(HasSubstr("source: detected takes those")));
+}
+
+TEST(TextReport, AStatisticOfNothingIsNone) {
+  const ReplayResult result;
+  EXPECT_THAT(TextReport(result),
+              AllOf(HasSubstr("step p50              none"), Not(HasSubstr("nan"))));
+  EXPECT_TRUE(nlohmann::json::parse(JsonReport(result))["step_us"]["p50"].is_null());
 }
 
 TEST(JsonReport, HasTheContractsShape) {
