@@ -22,7 +22,7 @@ PAPER = {
 
 
 def number(value, decimals=2):
-    return "-" if value is None else f"{value:.{decimals}f}"
+    return "none" if value is None else f"{value:.{decimals}f}"
 
 
 def row(name, values):
@@ -66,8 +66,9 @@ def headline(evaluation):
                        ("switches", "identity switches")):
         lines.append(row(title, of_lists(ours, key)))
     hidden = evaluation["hidden"]
-    lines.append(f"  Hidden vehicles in PRIORITY: {number(hidden['rms_m'])} m RMS, "
-                 f"{number(hidden['max_m'])} m at most, over {number(hidden['seconds'], 1)} s")
+    lines.append("  Hidden vehicles in PRIORITY: " + ("none" if hidden["rms_m"] is None else
+                 f"{number(hidden['rms_m'])} m RMS, {number(hidden['max_m'])} m at most, "
+                 f"over {number(hidden['seconds'], 1)} s"))
     for name, gate in evaluation.get("gates", {}).items():
         verdict = "ok  " if gate["pass"] else "MISS"
         lines.append(f"  gate {verdict} {name}: {number(gate['value'], 4)} "

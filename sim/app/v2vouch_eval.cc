@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "daemon/program/command_line.h"
 #include "sim/annotation/annotate_log.h"
 #include "sim/evaluation/evaluation.h"
 #include "sim/evaluation/report.h"
@@ -28,8 +29,14 @@ constexpr const char* kExamples =
     "                                              and `v2v.message_verdicts: true` in the replay\n"
     "  v2vouch-eval drive.lcm --summary            a real drive: counts, no truth needed\n"
     "\n"
-    "Exit codes: 0 good; 1 the log cannot be read or judged (no TRUTH), or with --gates a gate is\n"
-    "missed; 2 usage.";
+    "Exit codes: 0 good; 1 the log cannot be read or judged (no TRUTH, no lists, no overlap, a "
+    "step of\n"
+    "time), or with --gates a gate is missed; 2 usage.";
+
+int Complain(const std::string& what) {
+  std::fprintf(stderr, "v2vouch-eval: %s\n", what.c_str());
+  return kFailed;
+}
 
 /// Shows the share done on a terminal; says nothing elsewhere.
 std::function<void(double)> Progress(const char* what) {
@@ -72,6 +79,9 @@ int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
   using namespace v2vouch::evaluation;
   RunLog log;
   if (!Load(path, log, ReadScope::kSpoof)) return kFailed;
+  if (const std::string why = WhyNotJudged(log); !log.truth.empty() && !why.empty()) {
+    return Complain(path + ": " + why);
+  }
   const char* missing = log.truth.empty()        ? "TRUTH"
                         : log.bsm_truths.empty() ? "TRUTH_BSM"
                         : log.bsm_verdicts.empty()
@@ -94,7 +104,6 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Judges a recorded run against its truth: GOSPA with all parts, bound, gates, report.");
   app.footer(kExamples);
-  app.set_version_flag("--version", V2VOUCH_VERSION);
   std::string log_path, paper_path, report_folder, lcm_url;
   ScoringSettings settings;
   bool as_json = false, summary = false, use_gates = false, spoof = false, message_checks = false;
@@ -116,34 +125,28 @@ int main(int argc, char** argv) {
                "With --spoof: message-only checks of the published kind on the same messages")
       ->needs(of_spoof);
   app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? kGood : kUsage;
-  }
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-eval", argc, argv)) return *code;
 
   if (spoof) return JudgeLies(log_path, message_checks, as_json);
   RunLog log;
   if (!Load(log_path, log)) return kFailed;
   if (summary) {
     std::fputs((as_json ? ListSummaryJson(log) : ListSummary(log)).c_str(), stdout);
-    return kGood;
+    const bool has_lists =
+        std::ranges::any_of(log.lists, [](const auto& lists) { return !lists.empty(); });
+    if (has_lists) return kGood;
+    return Complain(log_path + ": holds no track lists; `v2vouch-replay LOG --out OUT` makes them");
   }
-  if (log.truth.empty()) {
-    std::fprintf(stderr,
-                 "v2vouch-eval: %s holds no TRUTH, so nothing can be judged. `--summary` counts "
-                 "its lists.\n",
-                 log_path.c_str());
-    return kFailed;
+  if (const std::string why = WhyNotJudged(log); !why.empty()) {
+    return Complain(log_path + ": " + why);
   }
   const auto evaluation = Evaluate(std::move(log), settings);
   std::unique_ptr<Evaluation> paper;
   if (!paper_path.empty()) {
     RunLog paper_log;
     if (!Load(paper_path, paper_log)) return kFailed;
-    if (paper_log.truth.empty()) {
-      std::fprintf(stderr, "v2vouch-eval: %s holds no TRUTH.\n", paper_path.c_str());
-      return kFailed;
+    if (const std::string why = WhyNotJudged(paper_log); !why.empty()) {
+      return Complain(paper_path + ": " + why);
     }
     paper = Evaluate(std::move(paper_log), settings);
   }

@@ -119,7 +119,7 @@ std::string Padded(const std::string& text, std::size_t width) {
 }
 
 std::string Cell(const std::optional<double>& value, int digits, std::size_t width = 8) {
-  const std::string text = value ? Fixed(*value, digits) : std::string("-");
+  const std::string text = value ? Fixed(*value, digits) : std::string("none");
   return std::string(text.size() < width ? width - text.size() : 1, ' ') + text;
 }
 
@@ -246,7 +246,7 @@ std::string SummaryTable(const Summary& summary, bool field) {
     out += "  " + Padded(verdict, 14) + Padded(target.what, 62) + target.LimitText() + ", is " +
            target.ValueText() + "\n";
   }
-  out += "score " + (summary.score ? Fixed(*summary.score, 1) : std::string("-")) +
+  out += "score " + (summary.score ? Fixed(*summary.score, 1) : std::string("none")) +
          (summary.weakest.empty() ? "" : ", weakest " + summary.weakest) + "; " +
          std::to_string(summary.runs) + " runs\n";
   return out;

@@ -182,7 +182,7 @@ std::string Target::LimitText() const {
 
 std::string Target::ValueText() const {
   if (is_censored) return "never (" + worst + ")";
-  if (!value) return "-";
+  if (!value) return "none";
   return evaluation::Fixed(*value, digits) + (worst.empty() ? "" : " (" + worst + ")");
 }
 

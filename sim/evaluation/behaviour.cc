@@ -14,25 +14,11 @@ constexpr double kStanding_mps = 0.5;
 std::size_t At(Sighting s) { return static_cast<std::size_t>(s); }
 
 double Share(std::int64_t part, std::int64_t whole) {
-  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : kNoValue;
 }
 
 double Rms(double squares, std::int64_t count) {
-  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
-}
-
-Sighting TrueSighting(const TruthSample& sample, const PlanarMotion& motion,
-                      const Pose<World, Body>& X_WB, const SceneSpecs& specs) {
-  if (!sample.is_hidden) return Sighting::kVisible;
-  const Eigen::Vector2d p_B = (X_WB.Inverse() * Point<World>{motion.x_m, motion.y_m}).vector();
-  for (const SensorSpec& sensor : specs.sensors) {
-    const Eigen::Vector2d line = p_B - Eigen::Vector2d(sensor.x_m, sensor.y_m);
-    const double azimuth = WrapAngle(std::atan2(line.y(), line.x()) - sensor.yaw_rad);
-    if (line.norm() <= sensor.max_range_m && std::abs(azimuth) <= sensor.half_fov_rad) {
-      return Sighting::kHidden;
-    }
-  }
-  return Sighting::kOutOfView;
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : kNoValue;
 }
 
 const ListedTrack* FindTrack(const ReceivedList& list, std::int64_t id) {
@@ -48,7 +34,7 @@ struct Part {
   std::int64_t count = 0;
 
   [[nodiscard]] LocalisationPart Finish(double period_s) const {
-    return {Rms(squares, count), variance > 0.0 ? std::sqrt(bounded_squares / variance) : 0.0,
+    return {Rms(squares, count), variance > 0.0 ? std::sqrt(bounded_squares / variance) : kNoValue,
             static_cast<double>(count) * period_s};
   }
 };
@@ -94,7 +80,7 @@ ListBehaviour JudgeList(const RunLog& log, const std::vector<Timestamp>& grid, c
       const Sighting is = TrueSighting(*sample, *truth, *X_WB, log.specs);
       ++result.visibility.count[static_cast<std::size_t>(track->visibility)][At(is)];
     }
-    if (!pair.is_hidden) {
+    if (pair.sighting == Sighting::kVisible) {
       Part& part = is_standing ? standing : moving;
       const double square = pair.error_m * pair.error_m;
       part.squares += square;

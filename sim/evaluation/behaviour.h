@@ -10,9 +10,6 @@
 
 namespace v2vouch::evaluation {
 
-/// What a list says, and what TRUTH says, of how a vehicle can be seen. Values of track_t.
-enum class Sighting { kVisible = 0, kHidden = 1, kOutOfView = 2 };
-
 /// The list's visibility flag against truth, over matched tracks and instants.
 struct VisibilityTable {
   /// [said][true], both Sighting.
@@ -22,7 +19,7 @@ struct VisibilityTable {
   [[nodiscard]] std::int64_t truly(Sighting s) const;
   [[nodiscard]] std::int64_t right(Sighting s) const;
   [[nodiscard]] std::int64_t total() const;
-  /// 0 where nothing was counted.
+  /// NaN where nothing was counted.
   [[nodiscard]] double share_right() const;
   [[nodiscard]] double share_right_of_said(Sighting s) const;
   [[nodiscard]] double share_found_of_true(Sighting s) const;
@@ -34,17 +31,17 @@ struct HeadingFigures {
   std::int64_t samples = 0;
   std::int64_t reversed = 0;  ///< Samples with more than 90 degrees of error.
   int tracks = 0;
-  int flips = 0;                  ///< Times a track went from below 90 degrees of error to above.
-  int born_reversed = 0;          ///< Tracks already reversed at the age of a second.
-  double rms_moving_rad = 0.0;    ///< Of the error, vehicles that truly move ...
-  double rms_standing_rad = 0.0;  ///< ... and that stand.
+  int flips = 0;          ///< Times a track went from below 90 degrees of error to above.
+  int born_reversed = 0;  ///< Tracks already reversed at the age of a second.
+  double rms_moving_rad = kNoValue;    ///< Of the error, vehicles that truly move ...
+  double rms_standing_rad = kNoValue;  ///< ... and that stand.
 };
 
 /// Position error of visible vehicles of one kind, as ListScore's localisation.
 struct LocalisationPart {
-  double rms_m = 0.0;
-  double ratio = 0.0;    ///< Over the bound's RMS for the same pairs.
-  double seconds = 0.0;  ///< Vehicle-seconds.
+  double rms_m = kNoValue;
+  double ratio = kNoValue;  ///< Over the bound's RMS for the same pairs.
+  double seconds = 0.0;     ///< Vehicle-seconds.
 };
 
 struct ListBehaviour {
@@ -61,10 +58,8 @@ struct Behaviour {
 /// How a list behaves beside its distance from truth, from the pairs of its score. Truth and list
 /// are compared at the list's own time.
 ///
-/// True sighting: visible where a sensor's detection probability is above 0; else hidden where the
-/// centre is inside some sensor's field of view and range; else out of view. A list says "visible"
-/// both of what it knows to be in clear view and of what it cannot tell, so that column also counts
-/// its unknowns.
+/// A list says "visible" both of what it knows to be in clear view and of what it cannot tell, so
+/// that column also counts its unknowns.
 ListBehaviour JudgeList(const RunLog& log, const std::vector<Timestamp>& grid, const Bound& bound,
                         const ListScore& score, const ScoringSettings& settings);
 

@@ -70,14 +70,18 @@ Json MeanJson(const Confirmation::Mean& mean) {
 
 std::string ListLines(const char* name, const ListBehaviour& list) {
   const HeadingFigures& heading = list.heading;
-  std::string out = Line(
-      "  %-8s moving %.3f m RMS (%.2f x bound), standing %.3f m (%.2f x bound)\n"
-      "           heading RMS %.1f deg moving, %.1f deg standing; %d flips, %d born reversed, "
-      "in %d tracks\n",
-      name, list.moving.rms_m, list.moving.ratio, list.standing.rms_m, list.standing.ratio,
-      ToDegrees(heading.rms_moving_rad), ToDegrees(heading.rms_standing_rad), heading.flips,
-      heading.born_reversed, heading.tracks);
-  out += Line("           visibility said right %.1f %%; ", 100.0 * list.visibility.share_right());
+  const auto part = [](const LocalisationPart& p) {
+    if (std::isnan(p.rms_m)) return std::string("none");
+    return Fixed(p.rms_m, 3) + " m RMS (" + WithUnit(p.ratio, 2, " x bound") + ")";
+  };
+  std::string out = Line("  %-8s moving ", name) + part(list.moving) + ", standing " +
+                    part(list.standing) + "\n           heading RMS " +
+                    WithUnit(ToDegrees(heading.rms_moving_rad), 1, " deg") + " moving, " +
+                    WithUnit(ToDegrees(heading.rms_standing_rad), 1, " deg") + " standing; " +
+                    Line("%d flips, %d born reversed, in %d tracks\n", heading.flips,
+                         heading.born_reversed, heading.tracks);
+  out += "           visibility said right " +
+         WithUnit(100.0 * list.visibility.share_right(), 1, " %") + "; ";
   for (std::size_t said = 0; said < 3; ++said) {
     out += Line("%s %s: %lld/%lld/%lld", said == 0 ? "" : ",", kSightingNames[said],
                 static_cast<long long>(list.visibility.count[said][0]),
@@ -99,7 +103,7 @@ std::string VisibilityHtml(const char* name, const VisibilityTable& table) {
     out += "<td>" +
            (table.said(kSightings[said]) > 0
                 ? Number(100.0 * table.share_right_of_said(kSightings[said]), 1) + " %"
-                : std::string()) +
+                : std::string("none")) +
            "</td></tr>\n";
   }
   return out + "</table>\n";
@@ -126,6 +130,19 @@ double Rounded(double value) {
   return std::strtod(text, nullptr);
 }
 
+std::string WithUnit(double value, int digits, const char* unit) {
+  return std::isfinite(value) ? Fixed(value, digits) + unit : "none";
+}
+
+std::string UnseenText(const UnseenError& error) {
+  if (!(error.seconds > 0.0)) {
+    return "none (the bound could keep " + Fixed(error.possible_seconds, 1) + " vehicle-seconds)";
+  }
+  return Fixed(error.rms_m, 2) + " m RMS, " + Fixed(error.max_m, 2) + " m at most, over " +
+         Fixed(error.seconds, 1) + " vehicle-seconds (the bound could keep " +
+         Fixed(error.possible_seconds, 1) + ")";
+}
+
 std::string AneesText(const Anees& anees) {
   if (anees.count == 0) return "none";
   return Line("%.2f (band %.2f to %.2f, %.0f independent of %lld)", anees.mean(), anees.low,
@@ -150,11 +167,11 @@ std::string BehaviourTable(const Behaviour& behaviour) {
   const auto& confirmation = behaviour.confirmation;
   const auto all = confirmation.Average(Confirmation::Of::kAll);
   const auto moving = confirmation.Average(Confirmation::Of::kMoving);
-  out += Line(
-      "confirmation: %.2f looks (%.2f s) on average over %d of %d vehicles, median %.1f; moving "
-      "%.2f looks over %d of %d\n",
-      all.looks, all.delay_s, all.listed, all.vehicles, all.looks_median, moving.looks,
-      moving.listed, moving.vehicles);
+  out += "confirmation: " + WithUnit(all.looks, 2, " looks") + " (" +
+         WithUnit(all.delay_s, 2, " s") +
+         Line(") on average over %d of %d vehicles, median ", all.listed, all.vehicles) +
+         Fixed(all.looks_median, 1) + "; moving " + WithUnit(moving.looks, 2, " looks") +
+         Line(" over %d of %d\n", moving.listed, moving.vehicles);
   return out;
 }
 

@@ -19,6 +19,9 @@ const std::string kTruthStyle =
 const std::string kHiddenStyle = std::string("fill=\"") + colour::kHidden + "\" stroke=\"" +
                                  colour::kAlarm +
                                  "\" stroke-width=\"1.2\" stroke-dasharray=\"3 2\"";
+const std::string kOutOfViewStyle = std::string("fill=\"") + colour::kOutOfView + "\" stroke=\"" +
+                                    colour::kMuted +
+                                    "\" stroke-width=\"1.2\" stroke-dasharray=\"3 2\"";
 
 std::vector<Eigen::Vector2d> Corners(const Eigen::Vector2d& centre, double yaw_rad, double length_m,
                                      double width_m) {
@@ -95,17 +98,23 @@ void DrawTruth(Svg& svg, const Evaluation& evaluation, const Window& window, Tim
     const TruthObject& object = evaluation.log.truth.objects[o];
     const auto motion = object.motion.At(t);
     if (!motion) continue;
-    const bool is_hidden = object.motion.InForce(t)->is_hidden;
+    const auto X_WB = evaluation.log.truth.EgoPose(t);
+    const Sighting sighting =
+        X_WB ? TrueSighting(*object.motion.InForce(t), *motion, *X_WB, evaluation.log.specs)
+             : Sighting::kVisible;
     const auto box =
         window(Corners(motion->position(), motion->yaw_rad, object.length_m, object.width_m));
-    svg.Polygon(box, is_hidden ? kHiddenStyle : kTruthStyle);
+    svg.Polygon(box, sighting == Sighting::kVisible  ? kTruthStyle
+                     : sighting == Sighting::kHidden ? kHiddenStyle
+                                                     : kOutOfViewStyle);
     // A bar across the bonnet shows where it is heading.
     const Eigen::Vector2d front = 0.5 * (box[0] + box[3]);
     const Eigen::Vector2d middle = window(motion->position());
     const Eigen::Vector2d tip = middle + 0.55 * (front - middle);
-    svg.Polygon({box[0], box[3], tip}, std::string("fill=\"") +
-                                           (is_hidden ? colour::kAlarm : colour::kInk) +
-                                           "\" fill-opacity=\"0.55\"");
+    svg.Polygon({box[0], box[3], tip},
+                std::string("fill=\"") +
+                    (sighting == Sighting::kHidden ? colour::kAlarm : colour::kInk) +
+                    "\" fill-opacity=\"0.55\"");
   }
 }
 
@@ -229,7 +238,9 @@ std::string BirdsEyeLegend() {
   svg.Rect(x, 6.0, 20.0, 10.0, kTruthStyle);
   text("true vehicle", 124.0);
   svg.Rect(x, 6.0, 20.0, 10.0, kHiddenStyle);
-  text("hidden from every sensor", 222.0);
+  text("hidden", 78.0);
+  svg.Rect(x, 6.0, 20.0, 10.0, kOutOfViewStyle);
+  text("out of view", 104.0);
   svg.Rect(x, 6.0, 20.0, 10.0, Stroke(colour::kLocal, "1.6"));
   text("LOCAL track", 126.0);
   svg.Rect(x, 6.0, 20.0, 10.0, Stroke(colour::kPriority, "2"));

@@ -28,20 +28,21 @@ struct Waiting {
 Confirmation::Mean Confirmation::Average(Of which) const {
   Mean mean;
   std::vector<int> looks;
+  double looks_sum = 0.0, hits_sum = 0.0, delay_sum_s = 0.0;
   for (const FirstListing& vehicle : vehicles) {
     if (which != Of::kAll && vehicle.is_standing != (which == Of::kStanding)) continue;
     ++mean.vehicles;
     if (!vehicle.is_listed) continue;
     ++mean.listed;
-    mean.looks += vehicle.looks;
-    mean.expected_hits += vehicle.expected_hits;
-    mean.delay_s += vehicle.delay_s;
+    looks_sum += vehicle.looks;
+    hits_sum += vehicle.expected_hits;
+    delay_sum_s += vehicle.delay_s;
     looks.push_back(vehicle.looks);
   }
   if (mean.listed == 0) return mean;
-  mean.looks /= mean.listed;
-  mean.expected_hits /= mean.listed;
-  mean.delay_s /= mean.listed;
+  mean.looks = looks_sum / mean.listed;
+  mean.expected_hits = hits_sum / mean.listed;
+  mean.delay_s = delay_sum_s / mean.listed;
   std::sort(looks.begin(), looks.end());
   mean.looks_median = 0.5 * (looks[(looks.size() - 1) / 2] + looks[looks.size() / 2]);
   return mean;

@@ -25,10 +25,10 @@ struct Confirmation {
   struct Mean {
     int vehicles = 0;
     int listed = 0;
-    double looks = 0.0;  ///< Over the listed ones, as the rest.
-    double expected_hits = 0.0;
-    double delay_s = 0.0;
-    double looks_median = 0.0;
+    double looks = kNoValue;  ///< Over the listed ones, as the rest; NaN where none is.
+    double expected_hits = kNoValue;
+    double delay_s = kNoValue;
+    double looks_median = kNoValue;
   };
   enum class Of { kAll, kMoving, kStanding };
   [[nodiscard]] Mean Average(Of which) const;

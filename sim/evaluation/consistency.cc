@@ -10,7 +10,8 @@ namespace {
 
 using Series = std::vector<double>;  // nees - mean at instants in a row.
 
-std::vector<Series> Stretches(const std::vector<MatchedPair>& pairs, bool is_hidden, double mean) {
+std::vector<Series> Stretches(const std::vector<MatchedPair>& pairs, Sighting sighting,
+                              double mean) {
   struct Open {
     Series series;
     std::size_t last = 0;
@@ -18,7 +19,7 @@ std::vector<Series> Stretches(const std::vector<MatchedPair>& pairs, bool is_hid
   std::map<std::pair<std::size_t, std::int64_t>, Open> open;
   std::vector<Series> stretches;
   for (const MatchedPair& pair : pairs) {
-    if (pair.is_hidden != is_hidden || std::isnan(pair.nees)) continue;
+    if (pair.sighting != sighting || std::isnan(pair.nees)) continue;
     Open& now = open[{pair.object, pair.track}];
     if (!now.series.empty() && pair.instant != now.last + 1) {
       stretches.push_back(std::move(now.series));
@@ -66,9 +67,9 @@ double ChiSquareOfPairs(double p, int pairs) {
   return 0.5 * (low + high);
 }
 
-void SetBand(const std::vector<MatchedPair>& pairs, bool is_hidden, Anees& anees) {
+void SetBand(const std::vector<MatchedPair>& pairs, Sighting sighting, Anees& anees) {
   if (anees.count == 0) return;
-  const std::vector<Series> stretches = Stretches(pairs, is_hidden, anees.mean());
+  const std::vector<Series> stretches = Stretches(pairs, sighting, anees.mean());
   std::size_t longest = 0;
   for (const Series& series : stretches) longest = std::max(longest, series.size());
   const auto samples = static_cast<double>(anees.count);

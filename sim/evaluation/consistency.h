@@ -20,7 +20,7 @@ namespace v2vouch::evaluation {
 /// each other.
 /// Sources: Bar-Shalom, Li, Kirubarajan (2001), 5.4.2 (NEES test); Geyer, "Practical Markov chain
 /// Monte Carlo", Statistical Science 1992 (truncation of the sum).
-void SetBand(const std::vector<MatchedPair>& pairs, bool is_hidden, Anees& anees);
+void SetBand(const std::vector<MatchedPair>& pairs, Sighting sighting, Anees& anees);
 
 /// The value that a chi-square variable of 2 * `pairs` degrees of freedom stays below with
 /// probability `p` in (0, 1). Exact (Erlang) up to 5000 pairs, normal beyond.

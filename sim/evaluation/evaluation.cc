@@ -20,32 +20,37 @@ void ScorePriorityExtras(Evaluation& evaluation) {
   for (const TruthObject& object : truth.objects) {
     if (object.is_vehicle() && object.has_v2v) evaluation.hold_s[object.id] = 0.0;
   }
-  double square_sum = 0.0;
-  std::int64_t hidden_count = 0;
+  const auto error_of = [&](Sighting sighting) -> UnseenError& {
+    return sighting == Sighting::kHidden ? evaluation.hidden : evaluation.out_of_view;
+  };
+  double hidden_sum = 0.0, out_of_view_sum = 0.0;
   for (const MatchedPair& pair : priority.pairs) {
     evaluation.hold_s[truth.objects[pair.object].id] += period;
-    if (!pair.is_hidden) continue;
-    square_sum += pair.error_m * pair.error_m;
-    evaluation.hidden.max_m = std::max(evaluation.hidden.max_m, pair.error_m);
-    ++hidden_count;
+    if (pair.sighting == Sighting::kVisible) continue;
+    UnseenError& error = error_of(pair.sighting);
+    (pair.sighting == Sighting::kHidden ? hidden_sum : out_of_view_sum) +=
+        pair.error_m * pair.error_m;
+    error.max_m = std::fmax(error.max_m, pair.error_m);  // Of NaN and a number the number.
+    error.seconds += period;
   }
-  if (hidden_count > 0) {
-    evaluation.hidden.rms_m = std::sqrt(square_sum / static_cast<double>(hidden_count));
-    evaluation.hidden.seconds = static_cast<double>(hidden_count) * period;
-  }
+  const auto rms = [period](double sum, double seconds) {
+    return seconds > 0.0 ? std::sqrt(sum * period / seconds) : kNoValue;
+  };
+  evaluation.hidden.rms_m = rms(hidden_sum, evaluation.hidden.seconds);
+  evaluation.out_of_view.rms_m = rms(out_of_view_sum, evaluation.out_of_view.seconds);
   for (const InstantScore& now : priority.series) {
     const Timestamp t = evaluation.grid[now.instant];
     const auto ego = truth.ego.At(t);
-    for (std::size_t o = 0; ego && o < truth.objects.size(); ++o) {
+    const auto X_WB = truth.EgoPose(t);
+    for (std::size_t o = 0; ego && X_WB && o < truth.objects.size(); ++o) {
       const TruthObject& object = truth.objects[o];
       const TruthSample* sample = object.motion.InForce(t);
       if (sample == nullptr || !sample->is_hidden || !object.has_v2v) continue;
-      if ((object.motion.At(t)->position() - ego->position()).norm() >
-          evaluation.settings.radius_m) {
-        continue;
-      }
+      const PlanarMotion motion = *object.motion.At(t);
+      if ((motion.position() - ego->position()).norm() > evaluation.settings.radius_m) continue;
       if (evaluation.bound->At(ListKind::kPriority, o, now.instant).is_held) {
-        evaluation.hidden.possible_seconds += period;
+        error_of(TrueSighting(*sample, motion, *X_WB, evaluation.log.specs)).possible_seconds +=
+            period;
       }
     }
   }
@@ -59,12 +64,13 @@ void SetGates(Evaluation& evaluation) {
     const ListScore& score = evaluation.headline(kind);
     const std::string key = ListKey(kind);
     // A list that holds nothing is not thereby accurate, unless there was nothing to hold.
-    const bool has_any =
-        !score.pairs.empty() || score.bound_missed_seconds >= score.vehicle_seconds;
+    const bool may_be_none =
+        score.has_lists &&
+        (!score.pairs.empty() || score.bound_missed_seconds >= score.vehicle_seconds);
     evaluation.gates.push_back(
-        {key + "_localisation_ratio", score.localisation_ratio, localisation, has_any});
-    evaluation.gates.push_back(
-        {key + "_excess_missed_share", score.excess_missed_share, kExcessMissedShare});
+        {key + "_localisation_ratio", score.localisation_ratio, localisation, may_be_none});
+    evaluation.gates.push_back({key + "_excess_missed_share", score.excess_missed_share,
+                                kExcessMissedShare, score.has_lists});
     evaluation.gates.push_back({key + "_false_per_instant", score.false_per_instant(),
                                 kind == ListKind::kLocal ? kLocalFalsePerInstant : 0.0});
   }

@@ -15,17 +15,18 @@ namespace v2vouch::evaluation {
 /// One of the three figures that count by themselves (unavoidable misses dominate GOSPA).
 struct Gate {
   std::string name;
-  double value = 0.0;
+  double value = kNoValue;
   double limit = 0.0;
-  bool is_measured = true;  ///< False: the list holds nothing that could be measured.
-  [[nodiscard]] bool passes() const { return is_measured && value <= limit; }
+  bool may_be_none = false;  ///< Passes without a value: there was nothing to measure.
+  [[nodiscard]] bool has_value() const { return value == value; }
+  [[nodiscard]] bool passes() const { return has_value() ? value <= limit : may_be_none; }
 };
 
-/// Errors of hidden vehicles that PRIORITY kept.
-struct HiddenError {
-  double rms_m = 0.0;
-  double max_m = 0.0;
-  double seconds = 0.0;           ///< Vehicle-seconds hidden and kept.
+/// Errors of vehicles that PRIORITY kept while no sensor saw them.
+struct UnseenError {
+  double rms_m = kNoValue;
+  double max_m = kNoValue;
+  double seconds = 0.0;           ///< Vehicle-seconds unseen and kept.
   double possible_seconds = 0.0;  ///< ... that the bound could keep.
 };
 
@@ -43,7 +44,8 @@ struct Evaluation {
   std::unique_ptr<Bound> bound;
   double duration_s = 0.0;            ///< First to last truth sample.
   std::vector<CutoffScores> cutoffs;  ///< The headline first, then 10 and 30 where they differ.
-  HiddenError hidden;
+  UnseenError hidden;                 ///< Behind something.
+  UnseenError out_of_view;            ///< Where no sensor looks.
   Behaviour behaviour;
   std::vector<Miss> misses;               ///< Of PRIORITY, while the bound holds the vehicle.
   double validated_share = 0.0;           ///< Of the time PRIORITY could hold honest V2V cars.

@@ -21,17 +21,19 @@ struct Moment {
   std::string title;
 };
 
-/// The vehicle whose story the report tells: of those that send BSMs and were seen, the one that is
-/// hidden longest within the disc afterwards, up to the longest bridging budget per stretch;
+/// The vehicle whose story the report tells: of those that send BSMs and were seen, the one that no
+/// sensor sees longest within the disc afterwards (hidden or out of view), up to the longest
+/// bridging budget per stretch;
 /// stretches that end with the vehicle seen again count double. Lower id on a tie.
 /// @return index into Truth::objects, or nothing where no such vehicle is.
 std::optional<std::size_t> CriticalVehicle(const Evaluation& evaluation);
 
-/// When `object` is hidden within the disc, from its first sight on if `after_sight`.
-std::vector<Interval> HiddenIntervals(const Evaluation& evaluation, std::size_t object,
-                                      bool after_sight);
+/// When `object` is hidden or out of view, or `only` one of the two, within the disc, from its
+/// first sight on if `after_sight`.
+std::vector<Interval> UnseenIntervals(const Evaluation& evaluation, std::size_t object,
+                                      bool after_sight, std::optional<Sighting> only = {});
 
-/// Three moments worth a picture: seen, hidden, back (or still hidden). Without a critical vehicle,
+/// Three moments worth a picture: seen, unseen, back (or still unseen). Without a critical vehicle,
 /// the quarters of the run.
 std::vector<Moment> ChooseMoments(const Evaluation& evaluation,
                                   std::optional<std::size_t> critical);

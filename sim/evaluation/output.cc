@@ -6,6 +6,7 @@
 
 #include "sim/evaluation/behaviour_text.h"
 #include "sim/evaluation/evaluation.h"
+#include "sim/evaluation/svg.h"
 
 namespace v2vouch::evaluation {
 namespace {
@@ -19,6 +20,13 @@ Json AneesJson(const Anees& anees) {
           {"band_low", Rounded(anees.low)},
           {"band_high", Rounded(anees.high)},
           {"is_in_band", anees.is_in_band()}};
+}
+
+Json UnseenJson(const UnseenError& error) {
+  return {{"rms_m", Rounded(error.rms_m)},
+          {"max_m", Rounded(error.max_m)},
+          {"seconds", Rounded(error.seconds)},
+          {"possible_seconds", Rounded(error.possible_seconds)}};
 }
 
 Json Common(const ListScore& score) {
@@ -54,6 +62,7 @@ Json Full(const ListScore& score) {
   json["excess_missed_seconds"] = Rounded(score.excess_missed_seconds);
   json["visible"] = AneesJson(score.visible);
   json["hidden"] = AneesJson(score.hidden);
+  json["out_of_view"] = AneesJson(score.out_of_view);
   const double order = 2.0;
   json["t_gospa"] = {{"per_instant", Rounded(score.trajectory_per_step)},
                      {"total", Rounded(score.trajectory.tgospa)},
@@ -77,9 +86,9 @@ struct ListCounts {
   std::size_t lists = 0;
   std::size_t stale = 0;
   std::size_t distinct_tracks = 0;
-  double tracks_mean = 0.0;
-  double longest_s = 0.0;
-  double seconds = 0.0;
+  double tracks_mean = kNoValue;
+  double longest_s = kNoValue;
+  double seconds = kNoValue;
 };
 
 ListCounts CountList(const std::vector<ReceivedList>& lists) {
@@ -97,7 +106,7 @@ ListCounts CountList(const std::vector<ReceivedList>& lists) {
   }
   counts.distinct_tracks = lives.size();
   for (const auto& [id, life] : lives) {
-    counts.longest_s = std::max(counts.longest_s, ToSeconds(life.second - life.first));
+    counts.longest_s = std::fmax(counts.longest_s, ToSeconds(life.second - life.first));
   }
   if (!lists.empty()) {
     counts.tracks_mean = tracks / static_cast<double>(lists.size());
@@ -116,9 +125,11 @@ void AppendScores(std::string& out, const char* title, const std::vector<ListSco
   out += Line("\n%s\n", title);
   out += "  list       GOSPA   (RMS)   local.  missed   false  switch |   bound   ratio\n";
   for (const ListScore& s : scores) {
-    out += Line("  %-8s %7.3f %7.3f  %7.3f %7.3f %7.3f %7.3f | %7.3f %7.2f\n", ListTitle(s.kind),
-                s.gospa_mean, s.gospa_rms, s.localisation_mean, s.missed_mean, s.false_mean,
-                s.switching_mean, s.bound_mean, s.ratio());
+    out += Line("  %-8s %7s %7s  %7s %7s %7s %7s | %7s %7s\n", ListTitle(s.kind),
+                Fixed(s.gospa_mean, 3).c_str(), Fixed(s.gospa_rms, 3).c_str(),
+                Fixed(s.localisation_mean, 3).c_str(), Fixed(s.missed_mean, 3).c_str(),
+                Fixed(s.false_mean, 3).c_str(), Fixed(s.switching_mean, 3).c_str(),
+                Fixed(s.bound_mean, 3).c_str(), Fixed(s.ratio(), 2).c_str());
   }
 }
 
@@ -130,10 +141,8 @@ std::string ToJson(const Evaluation& evaluation, const Evaluation* paper) {
   json["order"] = evaluation.settings.order;
   json["duration_s"] = Rounded(evaluation.duration_s);
   json["lists"] = ListsJson(evaluation.cutoffs.front().own, true);
-  json["hidden"] = {{"rms_m", Rounded(evaluation.hidden.rms_m)},
-                    {"max_m", Rounded(evaluation.hidden.max_m)},
-                    {"seconds", Rounded(evaluation.hidden.seconds)},
-                    {"possible_seconds", Rounded(evaluation.hidden.possible_seconds)}};
+  json["hidden"] = UnseenJson(evaluation.hidden);
+  json["out_of_view"] = UnseenJson(evaluation.out_of_view);
   json["behaviour"] = BehaviourJson(evaluation.behaviour);
   json["validated_share"] = Rounded(evaluation.validated_share);
   json["hold_s"] = Json::object();
@@ -198,34 +207,36 @@ std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
       "\nthe paper's own table (its scenario, c = 30): GOSPA local 56.12, V2V 7.517, "
       "priority 48.62\n\ngates\n";
   for (const Gate& gate : evaluation.gates) {
-    out += Line("  %-4s %-30s %8.4f  (at most %g)\n", gate.passes() ? "ok" : "MISS",
-                gate.name.c_str(), gate.value, gate.limit);
+    out += Line("  %-4s %-30s %8s  (at most %g)\n", gate.passes() ? "ok" : "MISS",
+                gate.name.c_str(), Fixed(gate.value, 4).c_str(), gate.limit);
   }
-  out += Line(
-      "\nhidden vehicles in PRIORITY: %.2f m RMS, %.2f m at most, over %.1f s (bound: %.1f s)\n",
-      evaluation.hidden.rms_m, evaluation.hidden.max_m, evaluation.hidden.seconds,
-      evaluation.hidden.possible_seconds);
-  out += Line("validated share %.1f %%; switches LOCAL %d, PRIORITY %d\n",
-              100.0 * evaluation.validated_share, local.switches, priority.switches);
+  out += "\nin PRIORITY while hidden: " + UnseenText(evaluation.hidden) +
+         "\nin PRIORITY while out of view: " + UnseenText(evaluation.out_of_view) +
+         "\nvalidated share " + WithUnit(100.0 * evaluation.validated_share, 1, " %") +
+         Line("; switches LOCAL %d, PRIORITY %d\n", local.switches, priority.switches);
   out += "ANEES (ideal 2; 95 % band)\n";
   for (const ListScore* score : {&local, &priority}) {
     out += Line("  %-8s visible ", ListTitle(score->kind)) + AneesText(score->visible) +
-           "; hidden " + AneesText(score->hidden) + "\n";
+           "; hidden " + AneesText(score->hidden) + "; out of view " +
+           AneesText(score->out_of_view) + "\n";
   }
   out += BehaviourTable(evaluation.behaviour);
-  out += Line("T-GOSPA per instant: LOCAL %.3f, PRIORITY %.3f%s\n", local.trajectory_per_step,
-              priority.trajectory_per_step,
+  out += Line("T-GOSPA per instant: LOCAL %s, PRIORITY %s%s\n",
+              Fixed(local.trajectory_per_step, 3).c_str(),
+              Fixed(priority.trajectory_per_step, 3).c_str(),
               local.trajectory.is_exact && priority.trajectory.is_exact ? "" : " (upper bounds)");
   out += "seconds in PRIORITY:";
   for (const auto& [id, seconds] : evaluation.hold_s) {
     out += Line(" %lld: %.1f", static_cast<long long>(id), seconds);
   }
+  if (evaluation.hold_s.empty()) out += " none";
   out += "\nmissed by PRIORITY though the bound holds it (vehicle, reason, seconds, from):\n";
   for (const Miss& miss : evaluation.misses) {
     out += Line("  %lld %s%s%s %.1f s from %.1f s\n", static_cast<long long>(miss.vehicle),
                 MissReasonKey(miss.reason), miss.check.empty() ? "" : " ", miss.check.c_str(),
                 miss.seconds, miss.first_s);
   }
+  if (evaluation.misses.empty()) out += "  none\n";
   return out;
 }
 
@@ -253,9 +264,10 @@ std::string ListSummary(const RunLog& log) {
   out += "  list       lists  stale  seconds  tracks at a time  distinct  longest [s]\n";
   for (const ListKind kind : kLists) {
     const ListCounts counts = CountList(log.lists[Index(kind)]);
-    out += Line("  %-8s %7zu %6zu %8.1f %17.2f %9zu %12.1f\n", ListTitle(kind), counts.lists,
-                counts.stale, counts.seconds, counts.tracks_mean, counts.distinct_tracks,
-                counts.longest_s);
+    out +=
+        Line("  %-8s %7zu %6zu %8s %17s %9zu %12s\n", ListTitle(kind), counts.lists, counts.stale,
+             Fixed(counts.seconds, 1).c_str(), Fixed(counts.tracks_mean, 2).c_str(),
+             counts.distinct_tracks, Fixed(counts.longest_s, 1).c_str());
   }
   return out;
 }

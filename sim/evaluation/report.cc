@@ -26,8 +26,13 @@ const char* ColourOf(ListKind kind) {
 std::vector<PlotBand> BandsOf(const Evaluation& evaluation, std::optional<std::size_t> critical) {
   std::vector<PlotBand> bands;
   if (!critical) return bands;
-  for (const Interval& hidden : HiddenIntervals(evaluation, *critical, true)) {
-    bands.push_back({hidden.from_s, hidden.to_s});
+  const std::string name =
+      "vehicle " + std::to_string(evaluation.log.truth.objects[*critical].id) + " ";
+  for (const auto& [sighting, fill] : {std::pair(Sighting::kHidden, colour::kHidden),
+                                       std::pair(Sighting::kOutOfView, colour::kOutOfView)}) {
+    for (const Interval& unseen : UnseenIntervals(evaluation, *critical, true, sighting)) {
+      bands.push_back({unseen.from_s, unseen.to_s, fill, name + SightingName(sighting)});
+    }
   }
   return bands;
 }
@@ -39,10 +44,6 @@ Plot PlotOver(const Evaluation& evaluation, std::optional<std::size_t> critical,
   plot.y_label = std::move(y_label);
   plot.x_to = std::max(evaluation.settings.period_s, evaluation.duration_s);
   plot.bands = BandsOf(evaluation, critical);
-  if (critical) {
-    plot.band_label =
-        "vehicle " + std::to_string(evaluation.log.truth.objects[*critical].id) + " hidden";
-  }
   return plot;
 }
 
@@ -173,11 +174,11 @@ std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
          (evaluation.log.specs.has_ideal_points ? "ideal point targets" : "extended vehicles") +
          ", disc of " + Number(evaluation.settings.radius_m) + " m round the ego</p>\n";
   out += Card("Gates", "", GatesHtml(evaluation));
-  out +=
-      Card("The scene",
-           "From above, ego heading up. Moments are chosen around the V2V vehicle that is hidden "
-           "longest after having been seen.",
-           Pictures(evaluation, critical));
+  out += Card(
+      "The scene",
+      "From above, ego heading up. Moments are chosen around the V2V vehicle that no sensor sees "
+      "for longest after having been seen.",
+      Pictures(evaluation, critical));
   if (!pictures.empty()) {
     out += Card("Through the camera",
                 "White: what the network or the smart camera saw. Green: LOCAL, magenta: PRIORITY, "

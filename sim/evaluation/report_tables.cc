@@ -2,7 +2,6 @@
 #include "sim/evaluation/report_tables.h"
 
 #include <cmath>
-#include <limits>
 
 #include "sim/evaluation/behaviour_text.h"
 #include "sim/evaluation/svg.h"
@@ -10,15 +9,12 @@
 namespace v2vouch::evaluation {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 struct PaperRow {
-  double gospa, localisation, missed, false_tracks, switching;
+  double gospa, missed, false_tracks, switching;
 };
 // Its table of means. Localisation is not in it: it follows from the other parts (p = 2, c = 30).
-constexpr PaperRow kPaperTable[] = {{56.12, kNone, 30.0, 47.43, 0.0},
-                                    {7.517, kNone, 0.0, 0.0, 0.0},
-                                    {48.62, kNone, 21.2, 42.43, 0.0}};
+constexpr PaperRow kPaperTable[] = {
+    {56.12, 30.0, 47.43, 0.0}, {7.517, 0.0, 0.0, 0.0}, {48.62, 21.2, 42.43, 0.0}};
 
 std::string Cells(std::initializer_list<double> values, int digits) {
   std::string out;
@@ -57,8 +53,8 @@ std::string ComparisonAt(const Evaluation& evaluation, const Evaluation* paper, 
            ListTitle(kind) + "</td></tr>\n";
     if (against == Against::kAllVehicles && cutoff_m == 30.0) {
       const PaperRow& row = kPaperTable[Index(kind)];
-      out += "<tr><td>the paper, its own scenario</td>" +
-             Cells({row.gospa, row.localisation, row.missed, row.false_tracks, row.switching}, 2) +
+      out += "<tr><td>the paper, its own scenario</td>" + Cells({row.gospa}, 2) +
+             "<td>not given</td>" + Cells({row.missed, row.false_tracks, row.switching}, 2) +
              "<td></td></tr>\n";
     }
     if (paper != nullptr) {
@@ -68,9 +64,8 @@ std::string ComparisonAt(const Evaluation& evaluation, const Evaluation* paper, 
     }
     out += "<tr class=\"ours\"><td>V2Vouch, this run</td>" + ScoreCells(ours) + "<td>" +
            Fixed(ours.ratio(), 2) + "</td></tr>\n";
-    out += "<tr class=\"bound\"><td>bound, this run</td>" +
-           Cells({ours.bound_mean, kNone, ours.bound_missed_mean, 0.0, 0.0}, 2) +
-           "<td></td></tr>\n";
+    out += "<tr class=\"bound\"><td>bound, this run</td>" + Cells({ours.bound_mean}, 2) +
+           "<td></td>" + Cells({ours.bound_missed_mean, 0.0, 0.0}, 2) + "<td></td></tr>\n";
   }
   return out + "</table>\n";
 }
@@ -85,7 +80,7 @@ std::string GatesHtml(const Evaluation& evaluation) {
     const char* unit = is_share ? " %" : "";
     out += std::string("<div class=\"gate") + (gate.passes() ? "" : " miss") +
            "\"><div class=\"what\">" + GateTitle(gate.name) + "</div><b>" +
-           (gate.is_measured ? Number(scale * gate.value, is_share ? 1 : 3) + unit : "none") +
+           (gate.has_value() ? Number(scale * gate.value, is_share ? 1 : 3) + unit : "none") +
            "</b> <span class=\"limit\">" + (gate.passes() ? "ok, " : "missed, ") + "at most " +
            Number(scale * gate.limit) + unit + "</span></div>\n";
   }
@@ -131,6 +126,7 @@ std::string DetailsHtml(const Evaluation& evaluation) {
   };
   anees_row("ANEES visible (ideal 2; 95 % band)", &ListScore::visible);
   anees_row("ANEES hidden", &ListScore::hidden);
+  anees_row("ANEES out of view", &ListScore::out_of_view);
   row("T-GOSPA per instant [m]", 3, [](const ListScore& s) { return s.trajectory_per_step; });
   row("vehicles followed by another track than before", 0,
       [](const ListScore& s) { return s.switches; });
@@ -142,18 +138,16 @@ std::string DetailsHtml(const Evaluation& evaluation) {
   row("... unavoidably", 1, [](const ListScore& s) { return s.bound_missed_seconds; });
   row("... missed although the bound holds them", 1,
       [](const ListScore& s) { return s.excess_missed_seconds; });
-  out += "</table>\n<p>Hidden vehicles kept by PRIORITY: " + Number(evaluation.hidden.rms_m) +
-         " m RMS, " + Number(evaluation.hidden.max_m) + " m at most, over " +
-         Number(evaluation.hidden.seconds, 1) + " vehicle-seconds (the bound could keep them " +
-         Number(evaluation.hidden.possible_seconds, 1) +
-         " s). Validated share of the time it was possible: " +
-         Number(100.0 * evaluation.validated_share, 1) + " %.</p>\n<p>Seconds in PRIORITY: ";
+  out += "</table>\n<p>Kept by PRIORITY while hidden: " + UnseenText(evaluation.hidden) +
+         "; while out of view: " + UnseenText(evaluation.out_of_view) +
+         ". Validated share of the time it was possible: " +
+         WithUnit(100.0 * evaluation.validated_share, 1, " %") + ".</p>\n<p>Seconds in PRIORITY: ";
   bool is_first = true;
   for (const auto& [id, seconds] : evaluation.hold_s) {
     out += (is_first ? "vehicle " : ", vehicle ") + std::to_string(id) + " " + Number(seconds, 1);
     is_first = false;
   }
-  return out + ".</p>\n";
+  return out + (is_first ? "none" : "") + ".</p>\n";
 }
 
 std::string DefinitionsHtml(const Evaluation& evaluation) {
@@ -181,9 +175,9 @@ std::string DefinitionsHtml(const Evaluation& evaluation) {
          "bridging budget min(10 s, 2 s + co-observed time), at least 4.5 s. V2V: from the second "
          "BSM; a list that corrects its senders' biases by own sensors can be better than "
          "that.</p>\n"
-         "<p class=\"note\"><b>Hidden</b>: no sensor ray reaches the vehicle by truth geometry, or "
-         "it "
-         "is outside every field of view. <b>T-GOSPA</b>: exact where a cluster of vehicles and "
+         "<p class=\"note\"><b>Hidden</b>: inside the range and field of view of a sensor, but by "
+         "truth geometry no ray reaches the vehicle. <b>Out of view</b>: outside of all of them. "
+         "<b>T-GOSPA</b>: exact where a cluster of vehicles and "
          "tracks has at most 512 matchings, else an upper bound by beam search" +
          std::string(evaluation.headline(ListKind::kLocal).trajectory.is_exact
                          ? ""

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <v2vouch/bsm_t.hpp>
 #include <v2vouch/bsm_verdict_t.hpp>
@@ -47,7 +48,8 @@ class Reader {
     if (channel == "TRUTH") return TakeTruth(event);
     if (channel == "BSM") return TakeBsm(event);
     if (channel == "MISBEHAVIOR") return TakeReport(event);
-    if (channel == "SIM_SCENARIO") return TakeScenario(event);
+    if (channel == "SIM_SCENARIO") return TakeText(event, scenario_);
+    if (channel == "V2VOUCH_CONFIG") return TakeText(event, config_);
     if (channel.starts_with("RADAR_")) return TakeLook<radar_scan_t>(event);
     if (!channel.starts_with("CAMERA_") || channel.ends_with("_IMAGE")) return;
     TakeLook<camera_detections_t>(event);
@@ -56,7 +58,8 @@ class Reader {
   void Finish() {
     UseMessageClock();
     for (auto& [id, object] : objects_) log_.truth.objects.push_back(std::move(object));
-    log_.specs = ReadSceneSpecs(scenario_);
+    // A drive that no simulator of ours made has the sensors that the daemon was told of.
+    log_.specs = ReadSceneSpecs(scenario_.empty() ? config_ : scenario_);
     for (const auto& [look, channel] : looks_) {
       for (std::size_t s = 0; s < log_.specs.sensors.size(); ++s) {
         if (log_.specs.sensors[s].channel != channel) continue;
@@ -112,6 +115,7 @@ class Reader {
     const auto message = Decoded<truth_list_t>(event);
     if (!message) return;
     const Timestamp stamp = FromMicros(message->utime);
+    NoteTruthTime(stamp);
     recorder_ahead_ = std::min(recorder_ahead_, event.received - stamp);
     TruthSample ego;
     ego.stamp = stamp;
@@ -143,6 +147,19 @@ class Reader {
       }
       out.motion.Add(std::move(sample));
     }
+  }
+
+  void NoteTruthTime(Timestamp stamp) {
+    constexpr double kBack_s = 1.0;  // Less is two events in the wrong order.
+    if (newest_truth_ && !log_.truth_step) {
+      // In floating point: stamps may be anything.
+      const double step_s = 1e-6 * (static_cast<double>(ToMicros(stamp)) -
+                                    static_cast<double>(ToMicros(*newest_truth_)));
+      if (step_s > ToSeconds(RunLog::kLongestPause) || step_s < -kBack_s) {
+        log_.truth_step = {*newest_truth_, stamp};
+      }
+    }
+    newest_truth_ = stamp;
   }
 
   void TakeBsm(const LogEvent& event) {
@@ -191,9 +208,9 @@ class Reader {
                                  message->refusal});
   }
 
-  void TakeScenario(const LogEvent& event) {
+  void TakeText(const LogEvent& event, std::string& text) {
     const auto message = Decoded<text_t>(event);
-    if (message && scenario_.empty()) scenario_ = message->text;
+    if (message && text.empty()) text = message->text;
   }
 
   // A live recording of a simulation has the recorder's wall clock on its events and the scenario's
@@ -224,6 +241,8 @@ class Reader {
   ReadScope scope_;
   std::map<std::int64_t, TruthObject> objects_;
   std::string scenario_;
+  std::string config_;  // Of the daemon.
+  std::optional<Timestamp> newest_truth_;
   std::vector<std::pair<SensorLook, std::string>> looks_;
   Duration recorder_ahead_ = Duration::max();  // Of the message clock; shortest seen.
 };
@@ -259,6 +278,82 @@ bool ReadRunLog(const std::string& path, const std::function<void(double)>& prog
   log.damaged = reader->damaged();
   if (progress) progress(1.0);
   return true;
+}
+
+namespace {
+
+// "2023-11-14 22:13:20.000 UTC (1700000000000000 us)".
+std::string TimeText(Timestamp stamp) {
+  const std::int64_t us = ToMicros(stamp);
+  const std::chrono::sys_seconds seconds{
+      std::chrono::floor<std::chrono::seconds>(std::chrono::microseconds(us))};
+  const auto day = std::chrono::floor<std::chrono::days>(seconds);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss time(seconds - day);
+  char text[120];
+  std::snprintf(text, sizeof text, "%04d-%02u-%02u %02d:%02d:%02d UTC (utime %lld)",
+                static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                static_cast<unsigned>(date.day()), static_cast<int>(time.hours().count()),
+                static_cast<int>(time.minutes().count()), static_cast<int>(time.seconds().count()),
+                static_cast<long long>(us));
+  return text;
+}
+
+std::string SpanText(double seconds) {
+  char text[64];
+  const double size = std::abs(seconds);
+  if (size < 120.0) {
+    std::snprintf(text, sizeof text, "%.1f s", size);
+  } else if (size < 86400.0) {
+    std::snprintf(text, sizeof text, "%.1f hours", size / 3600.0);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f days", size / 86400.0);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string WhyNotJudged(const RunLog& log) {
+  if (log.truth.empty()) {
+    return "holds no TRUTH, so nothing can be judged. `--summary` counts its lists";
+  }
+  if (log.truth_step) {
+    const double step_s = 1e-6 * (static_cast<double>(ToMicros(log.truth_step->to)) -
+                                  static_cast<double>(ToMicros(log.truth_step->from)));
+    return "the time of TRUTH steps " + std::string(step_s < 0.0 ? "back" : "on") + " by " +
+           SpanText(step_s) + ", from " + TimeText(log.truth_step->from) + " to " +
+           TimeText(log.truth_step->to) +
+           ": not one drive; cut the log there, or mend the stamps that are wrong";
+  }
+  const auto& local = log.lists[Index(ListKind::kLocal)];
+  const auto& priority = log.lists[Index(ListKind::kPriority)];
+  if (local.empty() && priority.empty()) {
+    return "holds no TRACKS_LOCAL and no TRACKS_PRIORITY, so there is nothing to judge; "
+           "`v2vouch-replay LOG --out OUT` makes them";
+  }
+  const Timestamp begin = log.truth.begin(), end = log.truth.end();
+  if (end - begin < std::chrono::seconds(1)) {
+    return "its TRUTH lasts " + SpanText(ToSeconds(end - begin)) +
+           ", and the first second is not judged (are its stamps microseconds?)";
+  }
+  constexpr std::int64_t kMostCells = 200'000'000;  // About 10 GB of bound.
+  const auto instants = static_cast<std::int64_t>(ToSeconds(end - begin) * 20.0) + 1;
+  if (instants * static_cast<std::int64_t>(log.truth.objects.size()) > kMostCells) {
+    return "its TRUTH is too long to be judged at once (" + SpanText(ToSeconds(end - begin)) +
+           ", " + std::to_string(log.truth.objects.size()) + " objects): cut the log";
+  }
+  Timestamp first = Timestamp::max(), last = Timestamp::min();
+  for (const auto* lists : {&local, &priority}) {
+    for (const ReceivedList& list : *lists) {
+      if (list.stamp >= begin && list.stamp <= end && list.received <= end) return "";
+      first = std::min(first, list.stamp);
+      last = std::max(last, list.stamp);
+    }
+  }
+  return "its lists and its TRUTH do not overlap in time: lists from " + TimeText(first) + " to " +
+         TimeText(last) + ", TRUTH from " + TimeText(begin) + " to " + TimeText(end) +
+         "; do both come from the same drive and clock?";
 }
 
 const ReceivedList* NewestBy(const std::vector<ReceivedList>& lists, Timestamp t) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -113,7 +114,19 @@ struct RunLog {
   std::int64_t refused = 0;  ///< Messages that did not decode.
   std::int64_t damaged = 0;  ///< Damaged stretches of the file.
   double log_seconds = 0.0;
+  /// Where TRUTH's time steps back, or on by more than kLongestPause: the first such step.
+  struct TimeStep {
+    Timestamp from{};
+    Timestamp to{};
+  };
+  std::optional<TimeStep> truth_step;
+  static constexpr Duration kLongestPause = std::chrono::minutes(10);
 };
+
+/// Why this run cannot be judged against its truth, with what to do about it; "" where it can:
+/// TRUTH and lists are there, overlap in time, and TRUTH's time runs on without a step (the grid
+/// that the run is judged on has an instant for every 50 ms of it).
+std::string WhyNotJudged(const RunLog& log);
 
 enum class ReadScope {
   kAll,    ///< Everything but the messages' truths and verdicts.

@@ -17,7 +17,9 @@ struct PlacedTruth {
   std::size_t object = 0;
   Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
   bool is_inside = false;
-  bool is_hidden = false;
+  Sighting sighting = Sighting::kVisible;
+
+  [[nodiscard]] bool is_seen() const { return sighting == Sighting::kVisible; }
 };
 
 bool IsInScope(const TruthObject& object, ListKind kind, Against against) {
@@ -58,6 +60,7 @@ class Scorer {
     const Timestamp t = grid_[k];
     const auto ego = log_.truth.ego.At(t);
     if (!ego) return;
+    const Pose<World, Body> X_WB(ego->x_m, ego->y_m, ego->yaw_rad);
     const auto inside = [&](const Eigen::Vector2d& p) {
       return (p - ego->position()).norm() <= settings_.radius_m;
     };
@@ -69,8 +72,8 @@ class Scorer {
       if (!IsInScope(object, score_.kind, against_)) continue;
       const auto motion = object.motion.At(t);
       if (!motion) continue;
-      truths.push_back(
-          {o, motion->position(), inside(motion->position()), object.motion.InForce(t)->is_hidden});
+      truths.push_back({o, motion->position(), inside(motion->position()),
+                        TrueSighting(*object.motion.InForce(t), *motion, X_WB, log_.specs)});
     }
     truth_points_.clear();
     track_points_.clear();
@@ -134,26 +137,44 @@ class Scorer {
     score_.gospa_rms = std::sqrt(power_sum_ / count);
     score_.false_track_ids = static_cast<int>(false_ids_.size());
     score_.bound_missed_seconds = score_.vehicle_seconds - held_seconds_;
-    score_.excess_missed_share =
-        held_seconds_ > 0.0 ? score_.excess_missed_seconds / held_seconds_ : 0.0;
-    score_.excess_missed_visible_share =
-        held_visible_seconds_ > 0.0 ? missed_visible_seconds_ / held_visible_seconds_ : 0.0;
-    score_.excess_missed_share_plain =
-        held_plain_seconds_ > 0.0 ? missed_plain_seconds_ / held_plain_seconds_ : 0.0;
+    const auto share = [](double part, double whole) {
+      return whole > 0.0 ? part / whole : kNoValue;
+    };
+    score_.excess_missed_share = share(score_.excess_missed_seconds, held_seconds_);
+    score_.excess_missed_visible_share = share(missed_visible_seconds_, held_visible_seconds_);
+    score_.excess_missed_share_plain = share(missed_plain_seconds_, held_plain_seconds_);
     const auto rms = [](double sum, std::int64_t n) {
-      return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
+      return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : kNoValue;
     };
     score_.localisation_rms_m = rms(visible_sum_, visible_count_);
     score_.localisation_all_rms_m = rms(all_sum_, static_cast<std::int64_t>(score_.pairs.size()));
     score_.localisation_ratio =
-        bounded_variance_ > 0.0 ? std::sqrt(bounded_sum_ / bounded_variance_) : 0.0;
-    SetBand(score_.pairs, false, score_.visible);
-    SetBand(score_.pairs, true, score_.hidden);
-    if (with_trajectories) ScoreTrajectories();
+        bounded_variance_ > 0.0 ? std::sqrt(bounded_sum_ / bounded_variance_) : kNoValue;
+    for (const Sighting sighting : {Sighting::kVisible, Sighting::kHidden, Sighting::kOutOfView}) {
+      SetBand(score_.pairs, sighting, AneesOf(sighting));
+    }
+    if (score_.has_lists && with_trajectories) ScoreTrajectories();
+    if (!score_.has_lists || score_.series.empty()) {  // Nothing was said, right or wrong.
+      for (double* mean :
+           {&score_.gospa_mean, &score_.gospa_rms, &score_.localisation_mean, &score_.missed_mean,
+            &score_.false_mean, &score_.switching_mean, &score_.excess_missed_share,
+            &score_.excess_missed_visible_share, &score_.excess_missed_share_plain}) {
+        *mean = kNoValue;
+      }
+    }
+    if (score_.series.empty()) {
+      score_.bound_mean = score_.bound_mean_plain = score_.bound_missed_mean = kNoValue;
+    }
     return std::move(score_);
   }
 
  private:
+  Anees& AneesOf(Sighting sighting) {
+    return sighting == Sighting::kVisible  ? score_.visible
+           : sighting == Sighting::kHidden ? score_.hidden
+                                           : score_.out_of_view;
+  }
+
   void TakeTruth(std::size_t k, const PlacedTruth& truth, const PlacedTrack* track,
                  const ReceivedList* list, InstantScore& now) {
     const TruthObject& object = log_.truth.objects[truth.object];
@@ -168,9 +189,9 @@ class Scorer {
     const double error = (truth.p_W - track->motion_W.position()).norm();
     now.localisation_pow += std::pow(error, settings_.order);
     const double nees = NeesAt(log_, object, *list, *track->track);
-    score_.pairs.push_back({k, truth.object, track->track->id, error, nees, truth.is_hidden});
+    score_.pairs.push_back({k, truth.object, track->track->id, error, nees, truth.sighting});
     if (!std::isnan(nees)) {
-      Anees& anees = truth.is_hidden ? score_.hidden : score_.visible;
+      Anees& anees = AneesOf(truth.sighting);
       anees.sum += nees;
       ++anees.count;
     }
@@ -180,7 +201,7 @@ class Scorer {
       last->second = track->track->id;
     }
     all_sum_ += error * error;
-    if (truth.is_hidden && score_.kind != ListKind::kV2v) return;
+    if (!truth.is_seen() && score_.kind != ListKind::kV2v) return;
     visible_sum_ += error * error;
     ++visible_count_;
     const BoundCell& cell = bound_.At(score_.kind, truth.object, k);
@@ -206,7 +227,7 @@ class Scorer {
       return;
     }
     held_seconds_ += settings_.period_s;
-    if (!truth.is_hidden) {
+    if (truth.is_seen()) {
       held_visible_seconds_ += settings_.period_s;
       if (!is_matched) missed_visible_seconds_ += settings_.period_s;
     }

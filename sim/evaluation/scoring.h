@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -9,9 +10,13 @@
 #include "sim/evaluation/bound.h"
 #include "sim/evaluation/gospa.h"
 #include "sim/evaluation/run_log.h"
+#include "sim/evaluation/sight.h"
 #include "sim/evaluation/tgospa.h"
 
 namespace v2vouch::evaluation {
+
+/// A statistic over nothing: "none" in tables, null in JSON.
+inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// Which true vehicles a list is held against.
 enum class Against {
@@ -40,7 +45,7 @@ struct MatchedPair {
   std::int64_t track = 0;
   double error_m = 0.0;
   double nees = 0.0;  ///< Squared normalised position error at the list's time; NaN = unusable.
-  bool is_hidden = false;
+  Sighting sighting = Sighting::kVisible;  ///< By truth.
 };
 
 /// One instant of one list. All `_pow` are p-th powers.
@@ -65,9 +70,11 @@ struct Anees {
   double sum = 0.0;
   std::int64_t count = 0;
   double independent = 0.0;
-  double low = 0.0;  ///< 95 % band of the mean of an honest covariance; 0, 0 without samples.
-  double high = 0.0;
-  [[nodiscard]] double mean() const { return count > 0 ? sum / static_cast<double>(count) : 0.0; }
+  double low = kNoValue;  ///< 95 % band of the mean of an honest covariance.
+  double high = kNoValue;
+  [[nodiscard]] double mean() const {
+    return count > 0 ? sum / static_cast<double>(count) : kNoValue;
+  }
   [[nodiscard]] bool is_in_band() const { return count > 0 && mean() >= low && mean() <= high; }
 };
 
@@ -77,7 +84,8 @@ struct ListScore {
   std::vector<InstantScore> series;
   std::vector<MatchedPair> pairs;
 
-  // Means over instants, of roots (lengths), as the paper's table.
+  // Means over instants, of roots (lengths), as the paper's table. These and all shares and ratios
+  // are kNoValue where there is nothing to take them of: no list of this kind, no vehicle.
   double gospa_mean = 0.0;
   double gospa_rms = 0.0;
   double localisation_mean = 0.0;
@@ -102,14 +110,16 @@ struct ListScore {
   double localisation_rms_m = 0.0;           ///< Visible vehicles only (V2V: all).
   double localisation_ratio = 0.0;           ///< Over the bound's RMS for the same pairs.
   double localisation_all_rms_m = 0.0;
-  Anees visible, hidden;
+  Anees visible, hidden, out_of_view;  ///< By the vehicle's true sighting.
   TrajectoryGospaResult trajectory;
-  double trajectory_per_step = 0.0;  ///< (power / instants)^(1/p).
+  double trajectory_per_step = kNoValue;  ///< (power / instants)^(1/p).
 
-  [[nodiscard]] double ratio() const { return bound_mean > 0.0 ? gospa_mean / bound_mean : 0.0; }
+  [[nodiscard]] double ratio() const {
+    return bound_mean > 0.0 ? gospa_mean / bound_mean : kNoValue;
+  }
   [[nodiscard]] double false_per_instant() const {
-    return series.empty()
-               ? 0.0
+    return series.empty() || !has_lists
+               ? kNoValue
                : static_cast<double>(false_instants) / static_cast<double>(series.size());
   }
 };

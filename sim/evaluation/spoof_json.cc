@@ -150,7 +150,7 @@ HonestTreatment ToHonest(const Json& json) {
 }
 
 std::string Percent(double part, double whole) {
-  return whole > 0.0 ? Fixed(100.0 * part / whole, 1) + " %" : std::string("-");
+  return whole > 0.0 ? Fixed(100.0 * part / whole, 1) + " %" : std::string("none");
 }
 
 std::string Line(const std::string& name, const std::string& value) {
@@ -159,7 +159,7 @@ std::string Line(const std::string& name, const std::string& value) {
 
 std::string ConfusionText(const Confusion& c) {
   const auto text = [](const std::optional<double>& v) {
-    return v ? Fixed(*v, 3) : std::string("-");
+    return v ? Fixed(*v, 3) : std::string("none");
   };
   return "F1 " + text(c.f1()) + "  precision " + text(c.precision()) + "  recall " +
          text(c.recall()) + "  (" + std::to_string(c.true_positive) + " met, " +
@@ -264,11 +264,11 @@ std::string SpoofTable(const SpoofRun& run) {
                                      std::to_string(h.in_view) + " messages in view");
   out += Line("held in PRIORITY",
               Percent(h.held_s, h.holdable_s) + " of " + Fixed(h.holdable_s, 1) + " s possible");
-  out += Line("occlusions of 3..6 s",
-              std::to_string(h.bridges) + ", survived " + std::to_string(h.bridges_survived) +
-                  " (within the budget " + std::to_string(h.bridges_in_budget) + ", survived " +
-                  std::to_string(h.survived_in_budget) + "), same id after " +
-                  std::to_string(h.bridges_same_id));
+  out += Line("unseen for 3..6 s", std::to_string(h.bridges) + ", survived " +
+                                       std::to_string(h.bridges_survived) + " (within the budget " +
+                                       std::to_string(h.bridges_in_budget) + ", survived " +
+                                       std::to_string(h.survived_in_budget) + "), same id after " +
+                                       std::to_string(h.bridges_same_id));
   return out;
 }
 

@@ -20,7 +20,7 @@ std::string PointList(const std::vector<Eigen::Vector2d>& points) {
 }  // namespace
 
 std::string Fixed(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
+  if (!std::isfinite(value)) return "none";
   char text[64];
   const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
   return {text, end.ptr};
@@ -138,7 +138,7 @@ std::string Draw(const Plot& plot) {
     const double from = std::max(band.from, plot.x_from);
     const double to = std::min(band.to, plot.x_to);
     svg.Rect(x_of(from), kTop, x_of(to) - x_of(from), inner_height,
-             std::string("fill=\"") + colour::kHidden + "\"");
+             std::string("fill=\"") + band.fill + "\"");
   }
   const std::string grid = std::string("stroke=\"") + colour::kGrid + "\"";
   for (double y = 0.0; y <= top * 1.0001; y += y_step) {
@@ -199,10 +199,13 @@ std::string Draw(const Plot& plot) {
     x += 28.0;
     legend_text(series.label);
   }
-  if (!plot.bands.empty() && !plot.band_label.empty()) {
-    svg.Rect(x, 8.0, 22.0, 13.0, std::string("fill=\"") + colour::kHidden + "\"");
+  std::string_view last_label;
+  for (const PlotBand& band : plot.bands) {
+    if (band.label.empty() || band.label == last_label) continue;
+    last_label = band.label;
+    svg.Rect(x, 8.0, 22.0, 13.0, std::string("fill=\"") + band.fill + "\"");
     x += 28.0;
-    legend_text(plot.band_label);
+    legend_text(band.label);
   }
   return svg.Finish();
 }

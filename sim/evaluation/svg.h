@@ -12,7 +12,7 @@ namespace v2vouch::evaluation {
 /// Shortest decimal form with at most `digits` places, no exponent, no locale: the same bytes
 /// everywhere.
 std::string Number(double value, int digits = 2);
-/// The same with exactly `digits` places, for columns of a table.
+/// The same with exactly `digits` places, for columns of a table; "none" of what is not finite.
 std::string Fixed(double value, int digits);
 /// Text made safe for XML and HTML.
 std::string Escape(std::string_view text);
@@ -26,6 +26,7 @@ inline constexpr const char* kInk = "#2d333b";
 inline constexpr const char* kMuted = "#7b8490";
 inline constexpr const char* kGrid = "#e6e8ec";
 inline constexpr const char* kHidden = "#f7dcd6";
+inline constexpr const char* kOutOfView = "#dfdcf0";
 inline constexpr const char* kAlarm = "#c0392b";
 }  // namespace colour
 
@@ -60,9 +61,12 @@ struct PlotSeries {
   double width = 1.8;
 };
 
+/// Bands of one label stand together.
 struct PlotBand {
   double from = 0.0;
   double to = 0.0;
+  std::string fill = colour::kHidden;
+  std::string label{};  ///< For the legend; "" = none.
 };
 
 /// Lines over time with axes, grid, shaded bands and a legend.
@@ -75,7 +79,6 @@ struct Plot {
   double y_least_top = 0.0;  ///< The y axis reaches at least this far.
   std::vector<PlotSeries> series;
   std::vector<PlotBand> bands;
-  std::string band_label;
   double width = 1060.0;
   double height = 270.0;
 };

@@ -98,7 +98,8 @@ std::string Timeline(const Evaluation& evaluation, std::size_t rows_at_most) {
   legend("LOCAL", colour::kLocal, 90.0);
   legend("V2V", colour::kV2v, 76.0);
   legend("PRIORITY", colour::kPriority, 112.0);
-  legend("hidden from every sensor", colour::kHidden, 200.0);
+  legend("hidden", colour::kHidden, 86.0);
+  legend("out of view", colour::kOutOfView, 114.0);
   legend("within the disc", "#eef0f3", 130.0);
 
   std::array<std::map<std::size_t, std::vector<char>>, 3> held;
@@ -113,8 +114,11 @@ std::string Timeline(const Evaluation& evaluation, std::size_t rows_at_most) {
     const TruthObject& object = evaluation.log.truth.objects[rows[r].object];
     const double y = kTop + kRow * static_cast<double>(r);
     stretches(rows[r].is_inside, y + 3.0, kRow - 6.0, "#eef0f3");
-    for (const Interval& hidden : HiddenIntervals(evaluation, rows[r].object, false)) {
-      bar(hidden.from_s, std::min(end_s, hidden.to_s), y + 3.0, kRow - 6.0, colour::kHidden);
+    for (const auto& [sighting, fill] : {std::pair(Sighting::kHidden, colour::kHidden),
+                                         std::pair(Sighting::kOutOfView, colour::kOutOfView)}) {
+      for (const Interval& unseen : UnseenIntervals(evaluation, rows[r].object, false, sighting)) {
+        bar(unseen.from_s, std::min(end_s, unseen.to_s), y + 3.0, kRow - 6.0, fill);
+      }
     }
     constexpr std::array kFills = {colour::kLocal, colour::kV2v, colour::kPriority};
     for (const ListKind kind : kLists) {

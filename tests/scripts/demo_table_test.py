@@ -56,7 +56,7 @@ class DemoTable(unittest.TestCase):
     def test_a_missed_gate_and_missing_figures_show(self):
         _, out, _ = run(json.dumps(EVALUATION), json.dumps(EVALUATION))
         self.assertIn("gate MISS local_false: 0.5000 (at most 0.02)", out)
-        self.assertIn("- m RMS", out)
+        self.assertIn("Hidden vehicles in PRIORITY: none", out)
 
     def test_unreadable_or_incomplete_input_is_an_error(self):
         self.assertEqual(1, run("{", "{}")[0])

@@ -209,8 +209,8 @@ std::vector<MatchedPair> HonestErrors(Random& random, int vehicles, int instants
   for (auto& e : errors) e = {random.Normal(), random.Normal()};
   for (int k = 0; k < instants; ++k) {
     for (std::size_t v = 0; v < errors.size(); ++v) {
-      pairs.push_back(
-          {static_cast<std::size_t>(k), v, 1, 0.0, scale * scale * errors[v].squaredNorm(), false});
+      pairs.push_back({static_cast<std::size_t>(k), v, 1, 0.0,
+                       scale * scale * errors[v].squaredNorm(), Sighting::kVisible});
       errors[v] = keep * errors[v] +
                   std::sqrt(1.0 - keep * keep) * Eigen::Vector2d(random.Normal(), random.Normal());
     }
@@ -224,7 +224,7 @@ Anees BandOf(const std::vector<MatchedPair>& pairs) {
     anees.sum += pair.nees;
     ++anees.count;
   }
-  SetBand(pairs, false, anees);
+  SetBand(pairs, Sighting::kVisible, anees);
   return anees;
 }
 

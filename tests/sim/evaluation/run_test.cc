@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sim/evaluation/evaluation.h"
@@ -68,8 +69,11 @@ TEST_F(EvaluatedRun, ThePedestrianIsNeitherMissedNorFalse) {
 }
 
 TEST_F(EvaluatedRun, HiddenVehicleIsFollowedInPriority) {
-  // Vehicles 1 (4 s) and 3 (from 9 s on) are hidden and kept.
+  // Vehicles 1 (4 s) and 3 (from 9 s on) are hidden within the sensors' fields of view, and kept;
+  // nobody is kept outside of them.
   EXPECT_NEAR(evaluation_->hidden.seconds, 9.0, 0.3);
+  EXPECT_EQ(evaluation_->out_of_view.seconds, 0.0);
+  EXPECT_TRUE(std::isnan(evaluation_->out_of_view.rms_m));
   EXPECT_GT(evaluation_->hidden.rms_m, 0.15);
   EXPECT_LT(evaluation_->hidden.max_m, 1.5);
   EXPECT_NEAR(evaluation_->hold_s.at(1), 12.3, 0.2);
@@ -114,6 +118,9 @@ TEST_F(EvaluatedRun, JsonHasTheAgreedShape) {
   for (const char* key : {"rms_m", "max_m", "seconds"}) {
     EXPECT_TRUE(json.at("hidden").at(key).is_number()) << key;
   }
+  EXPECT_TRUE(json.at("out_of_view").at("rms_m").is_null());
+  EXPECT_EQ(json.at("lists").at("local").at("out_of_view").at("samples"), 0);
+  EXPECT_TRUE(json.at("lists").at("local").at("out_of_view").at("anees").is_null());
   EXPECT_TRUE(json.at("validated_share").is_number());
   EXPECT_TRUE(json.at("lists").at("local").at("visible").at("is_in_band"));
   EXPECT_EQ(json.at("behaviour").at("local").at("heading").at("flips"), 0);
@@ -140,15 +147,20 @@ TEST_F(EvaluatedRun, ReportIsSelfContainedAndTheSameEveryTime) {
   EXPECT_THAT(html, testing::Not(testing::HasSubstr(">nan<")));
 }
 
-TEST(RunWithoutLists, IsAllMissed) {
+TEST(RunWithoutLists, IsAllMissedAndHasNoFigures) {
   const auto evaluation = Evaluate(Recorded({.has_lists = false}, "synthetic_empty.lcm"), {});
   const ListScore& local = evaluation->headline(ListKind::kLocal);
   EXPECT_EQ(local.missed_seconds, local.vehicle_seconds);
   EXPECT_FALSE(local.has_lists);
-  EXPECT_EQ(local.localisation_rms_m, 0.0);
-  for (const Gate& gate : evaluation->gates) {
-    EXPECT_EQ(gate.passes(), gate.name.ends_with("false_per_instant")) << gate.name;
-  }
+  EXPECT_TRUE(std::isnan(local.localisation_rms_m));
+  EXPECT_TRUE(std::isnan(local.gospa_mean));
+  for (const Gate& gate : evaluation->gates) EXPECT_FALSE(gate.passes()) << gate.name;
+  const std::string table = ToTable(*evaluation, nullptr);
+  EXPECT_THAT(table, testing::HasSubstr("none"));
+  EXPECT_THAT(table, testing::Not(testing::HasSubstr("nan")));
+  const auto json = nlohmann::json::parse(ToJson(*evaluation, nullptr));
+  EXPECT_TRUE(json.at("lists").at("local").at("gospa_mean").is_null());
+  EXPECT_TRUE(json.at("hidden").at("rms_m").is_null());
 }
 
 TEST(RunWithoutTruth, IsCountedButNotJudged) {

@@ -11,7 +11,7 @@ namespace v2vouch::evaluation {
 ///
 ///     1  car, V2V       oncoming; seen, hidden from 4 s to 8 s, seen again
 ///     2  truck          standing in the opposing turn lane
-///     3  car, V2V       turns off in front; out of view from 9 s
+///     3  car, V2V       turns off in front; hidden from 9 s
 ///     4  car            parked
 ///     5  car, V2V       behind, never seen
 ///     6  pedestrian
