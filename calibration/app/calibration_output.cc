@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string NumberOrNone(const char* format, double value) {
+  if (!std::isfinite(value)) return "none";
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
 
 template <class... Values>
 std::string Line(const char* format, Values... values) {
@@ -44,6 +52,20 @@ Json RemoteJson(const RemoteSolution& s) {
 
 }  // namespace
 
+std::string CalibrationVerdicts(const CalibrationRun& run) {
+  const auto count = [&](CalibrationVerdict verdict) {
+    return static_cast<int>(
+        std::ranges::count(run.extrinsics.parameters, verdict, &MountingEstimate::verdict));
+  };
+  using enum CalibrationVerdict;
+  std::string text =
+      Line("%d of %zu parameters estimated, %d weakly, %d stay as configured", count(kEstimated),
+           run.extrinsics.parameters.size(), count(kWeak), count(kPrior));
+  if (const int n = count(kAtBound); n > 0) text += Line(", %d at their bound", n);
+  if (const int n = count(kRejected); n > 0) text += Line(", %d rejected", n);
+  return text;
+}
+
 std::string CalibrationJson(const CalibrationRun& run, double solve_s) {
   const ExtrinsicsResult& result = run.extrinsics;
   Json json;
@@ -66,6 +88,12 @@ std::string CalibrationJson(const CalibrationRun& run, double solve_s) {
                                   {"shares", shares},
                                   {"hint", p.hint}});
   }
+  Json verdicts = Json::object();
+  for (const MountingEstimate& p : result.parameters) {
+    const std::string verdict = VerdictName(p.verdict);
+    verdicts[verdict] = verdicts.value(verdict, 0) + 1;
+  }
+  json["verdicts"] = verdicts;
   json["weak"] = Json::array();
   for (const WeakDirection& weak : result.weak) {
     json["weak"].push_back({{"information", weak.information}, {"direction", weak.description}});
@@ -90,6 +118,7 @@ std::string CalibrationJson(const CalibrationRun& run, double solve_s) {
                         {"bearing_std_deg", ToDegrees(e.bearing_spread_rad)},
                         {"inverse_range_std_pm", e.inverse_range_spread_pm}};
   json["covariance"] = {{"names", run.file.correlated}, {"values", run.file.covariance}};
+  json["messages"] = e.messages;
   json["events"] = run.events;
   json["refused"] = run.refused;
   json["damaged"] = run.damaged;
@@ -102,7 +131,8 @@ std::string CalibrationText(const CalibrationRun& run, double solve_s) {
   std::string text = Line("%-30s %11s %10s %11s %10s  %s\n", "parameter", "value", "std", "prior",
                           "prior std", "verdict");
   for (const MountingEstimate& p : result.parameters) {
-    text += Line("%-30s %11.4f %10.4f %11.4f %10.4f  %-9s  %s\n", p.name.c_str(), p.value, p.std,
+    text += Line("%-30s %11s %10s %11.4f %10.4f  %-9s  %s\n", p.name.c_str(),
+                 NumberOrNone("%.4f", p.value).c_str(), NumberOrNone("%.4f", p.std).c_str(),
                  p.prior, p.prior_std, VerdictName(p.verdict),
                  p.hint.empty() ? p.determined_by.c_str() : p.hint.c_str());
   }
@@ -121,6 +151,7 @@ std::string CalibrationText(const CalibrationRun& run, double solve_s) {
                  static_cast<long long>(run.damaged), static_cast<long long>(run.refused));
   }
   for (const std::string& problem : result.problems) text += "not accepted: " + problem + "\n";
+  if (!result.parameters.empty()) text += CalibrationVerdicts(run) + "\n";
   return text;
 }
 

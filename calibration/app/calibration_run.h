@@ -39,6 +39,8 @@ std::optional<CalibrationRun> Calibrate(const std::vector<std::string>& logs,
 
 /// One line of JSON, or a table for people.
 std::string CalibrationJson(const CalibrationRun& run, double solve_s);
+/// "3 of 22 parameters estimated, 2 weakly, 17 stay as configured".
+std::string CalibrationVerdicts(const CalibrationRun& run);
 std::string CalibrationText(const CalibrationRun& run, double solve_s);
 
 /// Writes `folder`/index.html, one page with all pictures in it, making the folder.

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "daemon/base/sha256.h"
 #include "daemon/io/event_log.h"
@@ -26,6 +29,12 @@ bool HashFile(const std::string& path, std::string& hex) {
   return std::ferror(file.get()) == 0;
 }
 
+// Compared in floating point: a stamp may be anything.
+bool IsAnotherTime(Timestamp a, Timestamp b) {
+  constexpr double kStep_us = 600e6;
+  return std::abs(static_cast<double>(ToMicros(a)) - static_cast<double>(ToMicros(b))) > kStep_us;
+}
+
 }  // namespace
 
 bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config, Drive& drive,
@@ -35,6 +44,7 @@ bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config,
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const auto reader = LogReader::Open(logs[i], error);
     if (reader == nullptr) return false;
+    std::optional<Timestamp> newest_motion;  // Of this log.
     LogEvent event;
     while (reader->Next(event)) {
       if (++drive.events % 4096 == 0 && progress) {
@@ -46,7 +56,21 @@ bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config,
       if (!decoded) {
         ++drive.refused;
       } else if (auto* input = std::get_if<Input>(&*decoded)) {
-        drive.newest = std::max(drive.newest, HeaderOf(*input).stamp);
+        const Timestamp stamp = HeaderOf(*input).stamp;
+        const bool is_motion = std::holds_alternative<EgoMotion>(*input);
+        if (newest_motion && IsAnotherTime(stamp, *newest_motion)) {
+          if (!is_motion) {  // That sensor's clock is wrong; it measured nothing of this drive.
+            ++drive.refused;
+            continue;
+          }
+          error = logs[i] + ": the time of " + config.lcm.channels.ego_motion + " steps from " +
+                  std::to_string(ToMicros(*newest_motion)) + " to " +
+                  std::to_string(ToMicros(stamp)) +
+                  " us within one log, more than 10 minutes: cut the log there, or mend its stamps";
+          return false;
+        }
+        if (is_motion) newest_motion = stamp;
+        drive.newest = std::max(drive.newest, stamp);
         drive.own.Keep(std::move(*input));
       }
     }
@@ -59,6 +83,12 @@ bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config,
   drive.own.SortByStamp();
   if (drive.own.motion.empty()) {
     error = logs.front() + ": no " + config.lcm.channels.ego_motion + " of this vehicle in it";
+    return false;
+  }
+  const auto& motion = drive.own.motion;
+  constexpr Duration kLongestSpan = std::chrono::days(60);  // Every 5 s of it is a parameter.
+  if (motion.back().stamp - motion.front().stamp > kLongestSpan) {
+    error = "the logs lie more than 60 days apart: calibrate them one by one";
     return false;
   }
   return true;

@@ -2,13 +2,14 @@
 // v2vouch-calibrate: where the sensors really sit, from recorded drives.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "calibration/app/calibration_run.h"
+#include "daemon/program/command_line.h"
 
 namespace v2vouch {
 namespace {
@@ -26,8 +27,8 @@ Then name the file in vehicle.yaml: `calibration: calibration.yaml`. A drive of 
 both ways, different speeds, standing things beside the road and some traffic tells everything; where
 something is missing, the table says what.
 
-Exit codes: 0 calibrated; 1 not accepted or a log cannot be read, nothing replaced; 2 usage or
-configuration.)";
+Exit codes: 0 calibrated (what stays as configured is told with its reason); 1 not accepted or a log
+cannot be read, nothing replaced; 2 usage or configuration.)";
 
 void ShowProgress(double share, const char* what) {
   static const bool is_terminal = isatty(STDERR_FILENO) == 1;
@@ -37,11 +38,15 @@ void ShowProgress(double share, const char* what) {
                100.0 * share, what);
 }
 
+// What no drive tells: see the table's hint.
+bool IsHeldByTheCar(const std::string& name) {
+  return name.ends_with(".odometer_y_m") || name.ends_with(".slip_s2pm");
+}
+
 int Run(int argc, char** argv) {
   CLI::App app{
       "Calibrates sensor mounting, antenna, heading bias and speed scale from recorded drives.",
       "v2vouch-calibrate"};
-  app.set_version_flag("--version", "v2vouch-calibrate " V2VOUCH_VERSION);
   app.footer(kExamples);
   std::vector<std::string> logs;
   std::string config_path;
@@ -55,11 +60,8 @@ int Run(int argc, char** argv) {
   app.add_option("--report", report, "folder for a page of residuals, index.html");
   app.add_flag("--json", as_json, "figures as one line of JSON");
   app.add_option("-l,--lcm-url", lcm_url, "taken like every program's; no socket is opened");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kUsage;
-  }
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-calibrate", argc, argv))
+    return *code;
   const auto complain = [](const std::string& what) {
     std::fprintf(stderr, "v2vouch-calibrate: %s\n", what.c_str());
   };
@@ -94,6 +96,12 @@ int Run(int argc, char** argv) {
   if (!SaveCalibration(out, run->file, error)) {
     complain(error);
     return kFailed;
+  }
+  const bool is_whole = std::ranges::none_of(run->extrinsics.parameters, [](const auto& p) {
+    return !IsApplied(p.verdict) && !IsHeldByTheCar(p.name);
+  });
+  if (!is_whole) {
+    complain("note: " + CalibrationVerdicts(*run) + "; the table says why and what helps");
   }
   return 0;
 }

@@ -61,7 +61,11 @@ const std::array<Pass, 3> kPasses = {{
 Excitation ExcitationOf(const EgoTrack& ego, const DriveData& data) {
   Excitation e;
   if (ego.samples().empty()) return e;
-  e.duration_s = ToSeconds(ego.samples().back().stamp - ego.samples().front().stamp);
+  constexpr double kPause_s = 10.0;  // Longer ones lie between two logs.
+  for (std::size_t i = 1; i < ego.samples().size(); ++i) {
+    const double step_s = ToSeconds(ego.samples()[i].stamp - ego.samples()[i - 1].stamp);
+    if (step_s <= kPause_s) e.duration_s += step_s;
+  }
   double n = 0.0, v = 0.0, vv = 0.0, ww = 0.0;
   std::complex<double> heading;
   for (const EgoTrack::Sample& sample : ego.samples()) {
@@ -96,6 +100,25 @@ Excitation ExcitationOf(const EgoTrack& ego, const DriveData& data) {
     e.inverse_range_spread_pm = std::sqrt(std::max(0.0, dd / m - d * d / (m * m)));
   }
   return e;
+}
+
+std::map<std::string, int> MessagesOf(const DriveLog& log, const VehicleConfig& vehicle) {
+  std::map<std::string, int> messages;
+  std::vector<std::string> radars, cameras;
+  for (const RadarConfig& radar : vehicle.radars) {
+    messages[radars.emplace_back("radar_" + SensorKey(radar.name))] = 0;
+  }
+  for (const CameraConfig& camera : vehicle.cameras) {
+    messages[cameras.emplace_back("camera_" + SensorKey(camera.name))] = 0;
+  }
+  for (const RadarScan& scan : log.scans) ++messages[radars[static_cast<std::size_t>(scan.radar)]];
+  for (const CameraDetections& picture : log.pictures) {
+    ++messages[cameras[static_cast<std::size_t>(picture.camera)]];
+  }
+  messages["gnss"] = static_cast<int>(log.fixes.size());
+  messages["gnss_heading"] = static_cast<int>(
+      std::ranges::count_if(log.fixes, [](const GnssFix& fix) { return fix.yaw_rad.has_value(); }));
+  return messages;
 }
 
 // The measurements that weigh most in an estimate.
@@ -183,6 +206,7 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
   if (is_weighed) information = Reduce(*problem, parameters, true);
   result.pictures = DrawResiduals(data, *problem, parameters);
   result.excitation = ExcitationOf(ego, data);
+  result.excitation.messages = MessagesOf(log, vehicle);
   const MountingInformation gaussian = Reduce(*problem, parameters, false);
   if (information.S.size() == 0 || gaussian.S.size() == 0) {
     result.problems.push_back("the equations have no unique solution");

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,9 @@ struct Excitation {
   int target_windows = 0;           ///< With radar and camera.
   double bearing_spread_rad = 0.0;  ///< Standard deviation over target windows.
   double inverse_range_spread_pm = 0.0;
+  /// Messages used, by sensor: "radar_front", "camera_front", "gnss", "gnss_heading" (fixes with
+  /// one). All sensors of the vehicle are there.
+  std::map<std::string, int> messages{};
 };
 
 /// One group of measurements: how many equations, how well they fit, how correlated their noise is.

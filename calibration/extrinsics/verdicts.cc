@@ -112,7 +112,23 @@ CalibrationVerdict VerdictOf(double value, double data_std, double prior, double
 std::string HintFor(const std::string& name, CalibrationVerdict verdict,
                     const Excitation& excitation) {
   if (verdict != CalibrationVerdict::kPrior && verdict != CalibrationVerdict::kWeak) return "";
-  if (excitation.moving_s < 20.0) return "the car hardly moved: drive, faster than 3 m/s";
+  const auto is_unheard = [&](const std::string& sensor) {
+    const auto found = excitation.messages.find(sensor);
+    return found != excitation.messages.end() && found->second == 0;
+  };
+  const std::string sensor = name.substr(0, name.find('.'));
+  if (is_unheard(sensor)) return "no message of " + sensor + " in the logs";
+  if (Contains(name, "antenna") && is_unheard("gnss")) return "no GNSS fix in the logs";
+  if (Contains(name, "heading_bias") && is_unheard("gnss_heading")) {
+    return is_unheard("gnss") ? "no GNSS fix in the logs" : "no fix in the logs has a heading";
+  }
+  if (excitation.moving_s < 20.0) {
+    if (excitation.moving_s <= 0.5 * excitation.duration_s || excitation.moving_s <= 0.0) {
+      return "the car hardly moved: drive, faster than 3 m/s";
+    }
+    return "only " + std::to_string(std::lround(excitation.moving_s)) +
+           " s of driving in the logs: ten minutes tell everything";
+  }
   const bool is_place = Contains(name, ".x_m") || Contains(name, ".y_m");
   const bool is_ego_place = Contains(name, "antenna") || Contains(name, "odometer_y");
   if (Contains(name, "odometer_y") || Contains(name, "slip")) {
@@ -123,7 +139,8 @@ std::string HintFor(const std::string& name, CalibrationVerdict verdict,
   }
   if (Contains(name, "camera_")) {
     if (excitation.target_windows < 100) {
-      return "too few moving vehicles seen by radar and camera: drive in traffic";
+      return "only " + std::to_string(excitation.target_windows) +
+             " looks at moving vehicles seen by radar and camera: drive in traffic";
     }
     if (Contains(name, "roll")) return "vehicles to the left and right of the camera's axis";
     if (Contains(name, "pitch") || Contains(name, ".z_m")) {
@@ -136,7 +153,9 @@ std::string HintFor(const std::string& name, CalibrationVerdict verdict,
   }
   if (Contains(name, "heading_bias")) return "the receiver gives no heading, or only a noisy one";
   if (is_place || is_ego_place) return "more turns, at different speeds";
-  return "a longer drive";
+  return "more of the same: " + std::to_string(std::lround(excitation.moving_s)) +
+         " s of driving and " + std::to_string(excitation.static_returns) +
+         " returns of standing things were too few";
 }
 
 }  // namespace v2vouch

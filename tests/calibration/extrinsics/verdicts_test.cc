@@ -105,6 +105,18 @@ TEST(HintFor, SaysWhatDrivingWouldHelp) {
   EXPECT_EQ(HintFor("radar_front.yaw_deg", kEstimated, straight), "");
   Excitation parked;
   EXPECT_THAT(HintFor("radar_front.yaw_deg", kPrior, parked), HasSubstr("hardly moved"));
+  Excitation brief = straight;
+  brief.duration_s = 18.0;
+  brief.moving_s = 15.0;
+  EXPECT_THAT(HintFor("radar_front.x_m", kPrior, brief), HasSubstr("only 15 s of driving"));
+  Excitation deaf = straight;
+  deaf.messages = {{"radar_front", 900}, {"camera_front", 0}, {"gnss", 20}, {"gnss_heading", 0}};
+  EXPECT_EQ(HintFor("camera_front.yaw_deg", kPrior, deaf),
+            "no message of camera_front in the logs");
+  EXPECT_EQ(HintFor("ego.heading_bias_deg", kPrior, deaf), "no fix in the logs has a heading");
+  EXPECT_THAT(HintFor("ego.antenna_x_m", kPrior, deaf), HasSubstr("no turns"));
+  deaf.messages["gnss"] = 0;
+  EXPECT_EQ(HintFor("ego.antenna_x_m", kPrior, deaf), "no GNSS fix in the logs");
   Excitation alone = straight;
   alone.target_windows = 3;
   EXPECT_THAT(HintFor("camera_front.pitch_deg", kPrior, alone), HasSubstr("drive in traffic"));
