@@ -45,6 +45,7 @@ bool DetectLog(const std::string& in, const std::string& out, const DaemonConfig
 
   const VehicleConfig& vehicle = config.perception.vehicle;
   const wire::InputDecoder decoder(vehicle, config.lcm.channels);
+  std::set<std::string> unknown;
   std::set<std::string> detected;
   for (const CameraConfig& camera : vehicle.cameras) {
     if (camera.source != CameraSource::kImage) continue;
@@ -60,6 +61,9 @@ bool DetectLog(const std::string& in, const std::string& out, const DaemonConfig
     if (detected.contains(event.channel)) continue;
     writer->Write(event.received, event.channel, event.bytes);
     const auto channel = decoder.Find(event.channel);
+    if (!channel && event.channel.ends_with(config.lcm.channels.image_suffix)) {
+      unknown.insert(event.channel);
+    }
     if (!channel || decoder.channels()[*channel].kind != wire::InputKind::kCameraImage) continue;
     ++result.pictures;
     const auto detections = Look(decoder, *channel, event, detector);
@@ -72,6 +76,7 @@ bool DetectLog(const std::string& in, const std::string& out, const DaemonConfig
     wire::EncodeDetections(*detections, camera, bytes);
     writer->Write(event.received, wire::DetectedChannel(config.lcm.channels, camera), bytes);
   }
+  result.unknown_pictures.assign(unknown.begin(), unknown.end());
   return writer->Close(error);
 }
 

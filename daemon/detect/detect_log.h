@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "daemon/assembly/daemon_config.h"
 #include "daemon/base/reason.h"
@@ -16,6 +17,7 @@ struct DetectLogResult {
   std::int64_t pictures = 0;
   std::int64_t boxes = 0;
   ReasonCounts refused{};
+  std::vector<std::string> unknown_pictures;  ///< Channels of pictures that no camera has.
 };
 
 /// Copies a log and puts behind every picture of a camera with `source: image` what the detector

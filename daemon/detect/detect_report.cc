@@ -28,9 +28,16 @@ Json ToJson(const CameraBox& box) {
 double MedianMs(const std::vector<PictureReport>& pictures) {
   std::vector<double> all;
   for (const PictureReport& picture : pictures) all.push_back(picture.ms);
-  if (all.empty()) return 0.0;
+  if (all.empty()) return NAN;
   std::sort(all.begin(), all.end());
   return all[all.size() / 2];
+}
+
+std::string OrNone(const char* format, double value) {
+  if (!std::isfinite(value)) return "none";
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
 }
 
 std::string Text(const Json& json) {
@@ -72,11 +79,11 @@ std::string TextReport(const std::vector<PictureReport>& pictures,
     }
   }
   if (!score) return text;
-  std::snprintf(line, sizeof(line),
-                "vehicles %d, found %d, false %d: recall %.2f, precision %.2f; median %.0f ms\n",
-                score->truths, score->found, score->false_boxes, score->recall(),
-                score->precision(), MedianMs(pictures));
-  return text + line;
+  std::snprintf(line, sizeof(line), "vehicles %d, found %d, false %d: recall ", score->truths,
+                score->found, score->false_boxes);
+  return text + line + OrNone("%.2f", score->recall()) + ", precision " +
+         OrNone("%.2f", score->precision()) + "; median " + OrNone("%.0f ms", MedianMs(pictures)) +
+         "\n";
 }
 
 std::string LogReport(const DetectLogResult& result, bool as_json) {

@@ -2,16 +2,18 @@
 // v2vouch-detect: the camera network on picture files, or on the pictures of a log.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 
+#include "daemon/base/did_you_mean.h"
 #include "daemon/detect/detect_log.h"
 #include "daemon/detect/detect_report.h"
 #include "daemon/detect/picture_file.h"
 #include "daemon/detection/network_detector.h"
+#include "daemon/program/command_line.h"
 
 namespace {
 
@@ -126,6 +128,36 @@ int LookAtFiles(const Options& options, NetworkDetector& detector) {
   return 0;
 }
 
+// What is wrong with a log of which no picture was looked at; "" where one was.
+std::string WhyNothingSeen(const DetectLogResult& result, const DaemonConfig& config) {
+  std::vector<std::string> cameras;
+  for (const CameraConfig& camera : config.perception.vehicle.cameras) {
+    if (camera.source != CameraSource::kImage) continue;
+    cameras.push_back(config.lcm.channels.camera_prefix + camera.name +
+                      config.lcm.channels.image_suffix);
+  }
+  if (result.pictures == 0) {
+    std::string why = "holds no picture on " + Listed(cameras);
+    for (const std::string& channel : result.unknown_pictures) {
+      why += "; pictures on " + channel + " belong to no camera with source: image" +
+             DidYouMean(channel, cameras);
+    }
+    return why;
+  }
+  std::uint64_t refused = 0;
+  std::vector<std::string> reasons;
+  for (std::size_t i = 0; i < kReasonCount; ++i) {
+    refused += result.refused[i];
+    if (result.refused[i] == 0) continue;
+    reasons.push_back(std::string(ReasonName(static_cast<Reason>(i))) + " " +
+                      std::to_string(result.refused[i]));
+  }
+  if (refused < static_cast<std::uint64_t>(result.pictures)) return "";
+  return "none of its " + std::to_string(result.pictures) +
+         " pictures could be looked at: " + Listed(reasons) +
+         " (are image_width_px and image_height_px those of the camera?)";
+}
+
 int LookAtLog(const Options& options, const DaemonConfig& config, NetworkDetector& detector) {
   DetectLogResult result;
   std::string error;
@@ -134,7 +166,8 @@ int LookAtLog(const Options& options, const DaemonConfig& config, NetworkDetecto
   }
   if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "\r\033[K");
   std::cout << LogReport(result, options.as_json);
-  return 0;
+  const std::string why = WhyNothingSeen(result, config);
+  return why.empty() ? 0 : Complain(options.log + ": " + why, kFailed);
 }
 
 int Run(const Options& options) {
@@ -150,6 +183,17 @@ int Run(const Options& options) {
   std::unique_ptr<NetworkDetector> detector;
   if (Configure(options, config, problems)) {
     detector = NetworkDetector::Load(config.detector, problems);
+  }
+  const auto& cameras = config.perception.vehicle.cameras;
+  if (!options.log.empty() && std::ranges::none_of(cameras, [](const CameraConfig& camera) {
+        return camera.source == CameraSource::kImage;
+      })) {
+    std::string names;
+    for (const CameraConfig& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
+    problems.push_back("--log: no camera of the vehicle has source: image" +
+                       (names.empty() ? " (it has no camera)" : " (it has " + names + ")") +
+                       ", so no picture would be looked at");
+    detector.reset();
   }
   for (const std::string& problem : problems) Complain(problem, kUsage);
   if (!detector) return kUsage;
@@ -168,9 +212,7 @@ int main(int argc, char** argv) {
   Options options;
   std::string lcm_url;
   CLI::App app("Runs the camera network on picture files, or on the pictures of a log.");
-  app.name("v2vouch-detect");
   app.footer(kExamples);
-  app.set_version_flag("--version", std::string("v2vouch-detect ") + V2VOUCH_VERSION);
   app.add_option("IMAGE", options.images, "Picture files");
   app.add_option("--config", options.config_path, "Vehicle description with its detector");
   app.add_option("--model", options.model, "Network: FILE.weights or FILE.onnx");
@@ -181,17 +223,13 @@ int main(int argc, char** argv) {
   app.add_option("--draw", options.draw_folder, "Folder for the pictures with boxes drawn in");
   app.add_option("--truth", options.truth_path, "Table of labelled boxes to score against");
   app.add_option("--degrade", options.degrade, "Look at worse copies of the pictures")
-      ->check(CLI::IsMember({"none", "dark", "flat", "noisy"}))
+      ->check(OneOf({"none", "dark", "flat", "noisy"}))
       ->capture_default_str();
   app.add_option("--log", options.log, "LCM log whose pictures are looked at");
   app.add_option("--out", options.out, "With --log: the log to write");
   app.add_flag("--json", options.as_json, "Print as JSON");
   app.add_option("-l,--lcm-url", lcm_url, "Taken like every program's; no socket is opened");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kUsage;
-  }
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-detect", argc, argv)) return *code;
   try {
     return Run(options);
   } catch (const std::exception& error) {

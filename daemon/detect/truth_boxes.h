@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -31,10 +32,11 @@ struct FindScore {
   int found = 0;
   int false_boxes = 0;
 
-  [[nodiscard]] double recall() const { return truths > 0 ? 1.0 * found / truths : 0.0; }
-  /// 1 where nothing was reported at all.
+  /// Of the labelled vehicles; NaN where there is none.
+  [[nodiscard]] double recall() const { return truths > 0 ? 1.0 * found / truths : NAN; }
+  /// Of what was reported; NaN where nothing was.
   [[nodiscard]] double precision() const {
-    return found + false_boxes > 0 ? 1.0 * found / (found + false_boxes) : 1.0;
+    return found + false_boxes > 0 ? 1.0 * found / (found + false_boxes) : NAN;
   }
 };
 

@@ -7,8 +7,10 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "daemon/base/did_you_mean.h"
 #include "daemon/config/yaml_reader.h"
 #include "daemon/io/event_log.h"
 #include "daemon/wire/channels.h"
@@ -99,10 +101,15 @@ class Annotation {
   bool Run(const PictureSink& sink, std::string& error) {
     if (!ReadVehicle(error) || !ChooseCamera(error) || !ReadContents(error)) return false;
     result_.has_images = contents_.images > 0;
+    result_.has_lists = !contents_.local.empty() || !contents_.priority.empty();
     result_.frames =
         result_.has_images ? contents_.images : static_cast<std::int64_t>(contents_.boxes.size());
     if (result_.frames == 0) {
       error = request_.log + ": holds neither pictures nor boxes of camera " + camera_.name;
+      if (!other_cameras_.empty()) {
+        error += "; it holds " +
+                 Listed(std::vector<std::string>(other_cameras_.begin(), other_cameras_.end()));
+      }
       return false;
     }
     return result_.has_images ? OverImages(sink, error) : OverBoxes(sink);
@@ -115,11 +122,13 @@ class Annotation {
       const auto text = config::ReadFile(request_.config_path, problems);
       if (!text) {
         error = problems.empty() ? request_.config_path + ": cannot be read" : problems.front();
+        result_.is_bad_request = true;
         return false;
       }
-      // The file's other sections are other programs' business.
-      config::Parse(*text, request_.config_path, file_, problems);
-      return true;
+      if (ReadVehicleSection(*text, problems)) return true;
+      result_.is_bad_request = true;
+      error = problems.front();
+      return false;
     }
     const auto reader = LogReader::Open(request_.log, error);
     if (!reader) return false;
@@ -135,14 +144,31 @@ class Annotation {
     return false;
   }
 
+  // The file's other sections are other programs' business.
+  bool ReadVehicleSection(const std::string& text, std::vector<std::string>& problems) {
+    auto root = config::ParseYaml(text, request_.config_path, problems);
+    if (!root) return false;
+    for (std::size_t i = 0; i < root->keys.size(); ++i) {
+      if (root->keys[i] != "vehicle") continue;
+      config::YamlReader reader(root->items[i], "vehicle", request_.config_path, problems);
+      file_.vehicle.Visit(reader);
+      reader.Finish();
+    }
+    return problems.empty();
+  }
+
   bool ChooseCamera(std::string& error) {
+    std::vector<std::string> names;
+    for (const CameraConfig& camera : file_.vehicle.cameras) names.push_back(camera.name);
     for (const CameraConfig& camera : file_.vehicle.cameras) {
       if (!request_.camera.empty() && camera.name != request_.camera) continue;
       camera_ = camera;
       return true;
     }
-    error = request_.camera.empty() ? "the vehicle has no camera"
-                                    : "the vehicle has no camera " + request_.camera;
+    error = names.empty() ? "the vehicle has no camera"
+                          : "the vehicle has no camera " + request_.camera +
+                                DidYouMean(request_.camera, names) + "; it has " + Listed(names);
+    result_.is_bad_request = true;
     return false;
   }
 
@@ -158,6 +184,7 @@ class Annotation {
       if (event.channel == channel || event.channel == channel + names.detected_suffix) {
         Keep(event, contents_.boxes);
       }
+      if (event.channel.starts_with(names.camera_prefix)) other_cameras_.insert(event.channel);
       if (event.channel == names.tracks_local) KeepList(event, contents_.local);
       if (event.channel == names.tracks_priority) KeepList(event, contents_.priority);
       if (is_first) first_us_ = ToMicros(event.received);
@@ -218,6 +245,7 @@ class Annotation {
   VehicleFile file_;
   CameraConfig camera_;
   Contents contents_;
+  std::set<std::string> other_cameras_;  // Channels.
   std::int64_t first_us_ = 0;
 };
 

@@ -103,9 +103,10 @@ void DrawScene(const Scene& scene, const CameraConfig& camera, const std::string
   }
   if (scene.priority != nullptr) {
     for (const track_t& track : scene.priority->tracks) {
-      const bool is_hidden = track.visibility != track_t::VISIBLE;
-      DrawTrack(track, camera, kPriorityColour, 2, Name("P", track) + (is_hidden ? " hidden" : ""),
-                1, picture);
+      const char* const sighting = track.visibility == track_t::HIDDEN        ? " hidden"
+                                   : track.visibility == track_t::OUT_OF_VIEW ? " out of view"
+                                                                              : "";
+      DrawTrack(track, camera, kPriorityColour, 2, Name("P", track) + sighting, 1, picture);
     }
   }
   Label(picture, {6, 14}, title, kBoxColour);

@@ -51,6 +51,10 @@ int ImportKitti(const KittiRequest& given) {
   if (!request.labels.empty() && !ReadKittiLabels(request.labels, labels, error)) {
     return ImportFailed(error);
   }
+  if (!request.labels.empty() && labels.empty() && request.images.empty()) {
+    return ImportFailed(request.labels +
+                        ": holds no labelled object, so there is nothing to import");
+  }
   KittiPictures pictures;
   int count = 0;
   if (!request.images.empty()) {

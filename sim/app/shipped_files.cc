@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cctype>
 
+#include "daemon/base/did_you_mean.h"
+#include "sim/world/overlay.h"
+
 namespace v2vouch::sim {
 namespace {
 
@@ -30,10 +33,25 @@ std::vector<std::filesystem::path> YamlFiles(const std::filesystem::path& folder
   return files;
 }
 
-std::string Find(const std::string& name, const std::filesystem::path& shipped) {
+std::string Find(const std::string& name, const std::filesystem::path& shipped, const char* what,
+                 const std::vector<std::string>& known, std::string& problem) {
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(name, ignored)) return name;
-  return std::filesystem::is_regular_file(shipped, ignored) ? shipped.string() : name;
+  if (std::filesystem::exists(name, ignored)) return name;
+  if (std::filesystem::is_regular_file(shipped, ignored)) return shipped.string();
+  problem += name + ": no such file, and no shipped " + what + " of this name" +
+             DidYouMean(name, known) + "; `v2vouch-sim list` shows them\n";
+  return name;
+}
+
+// As users name them: "left_turn"; "A5/lateral_8m" and "A05_lateral_8m".
+std::vector<std::string> Names(const std::vector<std::filesystem::path>& files, bool are_overlays) {
+  std::vector<std::string> names;
+  for (const auto& file : files) {
+    const std::string stem = file.stem().string();
+    if (are_overlays) names.push_back(OverlayName(file.string()));
+    names.push_back(stem);
+  }
+  return names;
 }
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -48,11 +66,13 @@ std::vector<std::filesystem::path> ShippedOverlays(std::string& problem) {
   return YamlFiles(OverlayFolder(), problem);
 }
 
-std::string FindScenario(const std::string& name) {
-  return Find(name, ScenarioFolder() / (name + ".yaml"));
+std::string FindScenario(const std::string& name, std::string& problem) {
+  std::string ignored;
+  return Find(name, ScenarioFolder() / (name + ".yaml"), "scenario",
+              Names(ShippedScenarios(ignored), false), problem);
 }
 
-std::string FindOverlay(const std::string& name) {
+std::string FindOverlay(const std::string& name, std::string& problem) {
   std::string stem = name;
   const std::size_t slash = name.find('/');
   if (slash != std::string::npos && slash >= 2) {  // "A5/x": files sort by two digits.
@@ -62,7 +82,9 @@ std::string FindOverlay(const std::string& name) {
              name.substr(slash + 1);
     }
   }
-  return Find(name, OverlayFolder() / (stem + ".yaml"));
+  std::string ignored;
+  return Find(name, OverlayFolder() / (stem + ".yaml"), "overlay",
+              Names(ShippedOverlays(ignored), true), problem);
 }
 
 }  // namespace v2vouch::sim

@@ -2,12 +2,12 @@
 // v2vouch-annotate: a log's camera pictures with boxes and tracks drawn in.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "daemon/program/command_line.h"
 #include "sim/annotation/annotate_log.h"
 
 namespace {
@@ -24,7 +24,7 @@ left, the pictures (CAMERA_*_IMAGE) in it; where there are none, boxes and track
 empty road.
 
 Exit codes: 0 good; 1 the log cannot be read, has no frame of the camera, or a picture cannot be
-written; 2 usage.)";
+written, or none of its pictures can be read; 2 usage or vehicle file.)";
 
 int Complain(const std::string& what, int code) {
   std::fprintf(stderr, "v2vouch-annotate: %s\n", what.c_str());
@@ -49,7 +49,9 @@ int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folde
   };
   const bool is_done = v2vouch::sim::AnnotateLog(request, write, result, error);
   if (is_terminal) std::fprintf(stderr, "\r\033[K");
-  if (!is_done || !error.empty()) return Complain(error, kFailed);
+  if (!is_done || !error.empty()) {
+    return Complain(error, result.is_bad_request ? kUsage : kFailed);
+  }
   const nlohmann::ordered_json report = {{"frames", result.frames},
                                          {"pictures", result.pictures},
                                          {"unread", result.unread},
@@ -59,6 +61,20 @@ int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folde
   } else {
     std::printf("%lld pictures of %lld frames in %s\n", static_cast<long long>(result.pictures),
                 static_cast<long long>(result.frames), folder.c_str());
+  }
+  if (result.has_images && result.unread == result.pictures) {
+    return Complain(request.log +
+                        ": none of the pictures could be read in the camera's size: "
+                        "boxes and tracks are drawn on an empty road. Are image_width_px and "
+                        "image_height_px those of the pictures?",
+                    kFailed);
+  }
+  if (!result.has_images) {
+    Complain("note: the log holds no pictures of this camera: boxes are drawn on an empty road", 0);
+  }
+  if (!result.has_lists) {
+    Complain(
+        "note: the log holds no track lists, so no tracks are drawn; v2vouch-replay makes them", 0);
   }
   return 0;
 }
@@ -72,7 +88,6 @@ int main(int argc, char** argv) {
   bool as_json = false;
   CLI::App app("Draws boxes and tracks into the camera pictures of a log.", "v2vouch-annotate");
   app.footer(kExamples);
-  app.set_version_flag("--version", "v2vouch-annotate " V2VOUCH_VERSION);
   app.add_option("LOG", request.log, "LCM log with tracks")->required();
   app.add_option("OUT_DIR", folder, "Folder for the pictures (made if absent)")->required();
   app.add_option("--camera", request.camera, "Name of the camera (default: the first)");
@@ -82,11 +97,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--json", as_json, "Figures as one line of JSON");
   app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? 0 : kUsage;
-  }
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-annotate", argc, argv)) return *code;
   try {
     return Run(request, folder, as_json);
   } catch (const std::exception& error) {

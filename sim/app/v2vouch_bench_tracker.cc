@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "daemon/program/command_line.h"
 #include "sim/bench/bench.h"
 
 namespace {
@@ -62,19 +63,27 @@ void PrintJson(const BenchFigures& f) {
   std::printf("%s\n", out.dump().c_str());
 }
 
+std::string OrNone(const char* format, double value) {
+  if (!std::isfinite(value)) return "none";
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
 void PrintTable(const BenchFigures& f) {
   std::printf("frames scored        %d\n", f.frames);
   std::printf("vehicles per frame   %.1f\n",
               f.frames > 0 ? static_cast<double>(f.truths) / f.frames : 0.0);
   std::printf("detections           %lld\n", static_cast<long long>(f.detections));
-  std::printf("GOSPA mean           %.3f\n", f.gospa_mean());
-  std::printf("RMSE                 %.3f m\n", f.rmse_m());
+  std::printf("GOSPA mean           %s\n", OrNone("%.3f", f.gospa_mean()).c_str());
+  std::printf("RMSE                 %s\n", OrNone("%.3f m", f.rmse_m()).c_str());
   std::printf("missed               %lld of %lld\n", static_cast<long long>(f.missed),
               static_cast<long long>(f.truths));
   std::printf("false tracks         %d (%lld states)\n", f.false_tracks,
               static_cast<long long>(f.false_states));
   std::printf("switches             %d\n", f.switches);
-  std::printf("step mean, p95       %.3f, %.3f ms\n", f.ms_mean(), f.ms_quantile(0.95));
+  std::printf("step mean, p95       %s, %s\n", OrNone("%.3f ms", f.ms_mean()).c_str(),
+              OrNone("%.3f ms", f.ms_quantile(0.95)).c_str());
 }
 
 }  // namespace
@@ -82,7 +91,6 @@ void PrintTable(const BenchFigures& f) {
 int main(int argc, char** argv) {
   CLI::App app("Runs the tracker core over recorded or generated detections: accuracy and time.");
   app.footer(kExamples);
-  app.set_version_flag("--version", V2VOUCH_VERSION);
   std::string path, out_path, seeds = "1", lcm_url;
   BenchSettings settings;
   TrafficSpec traffic;
@@ -134,13 +142,12 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--json", as_json, "Figures as JSON on standard output");
   app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; needs no network");
-  try {
-    app.parse(argc, argv);
-    if (file->count() + generate->count() != 1) {
-      throw CLI::ValidationError("give FILE or --generate N");
-    }
-  } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? kGood : kUsage;
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-bench-tracker", argc, argv)) {
+    return *code;
+  }
+  if (file->count() + generate->count() != 1) {
+    std::fprintf(stderr, "v2vouch-bench-tracker: give FILE or --generate N\n");
+    return kUsage;
   }
   std::uint64_t first = 1, last = 1;
   if (!ParseSeeds(seeds, first, last) || (!out_path.empty() && first != last)) {
@@ -182,5 +189,12 @@ int main(int argc, char** argv) {
     }
   }
   as_json ? PrintJson(total) : PrintTable(total);
+  if (total.frames == 0) {
+    std::fprintf(stderr,
+                 "v2vouch-bench-tracker: no frame is scored: the recording has at most the %d that "
+                 "--skip leaves out\n",
+                 settings.skipped_frames);
+    return kFailed;
+  }
   return kGood;
 }

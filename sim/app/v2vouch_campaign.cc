@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -10,6 +9,8 @@
 #include <fstream>
 #include <set>
 
+#include "daemon/base/did_you_mean.h"
+#include "daemon/program/command_line.h"
 #include "sim/app/shipped_files.h"
 #include "sim/campaign/report.h"
 #include "sim/campaign/runner.h"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 constexpr int kGood = 0;
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
+constexpr int kNothingToDo = -1;
 
 constexpr const char* kExamples =
     "Examples:\n"
@@ -101,6 +103,20 @@ bool ReadShard(const std::string& text, std::size_t& i, std::size_t& n) {
   return std::sscanf(text.c_str(), "%zu/%zu%c", &i, &n, &rest) == 2 && i >= 1 && i <= n;
 }
 
+// No overlay suits any of the scenarios, or none was asked for.
+std::string WhyNothing(const Plan& plan) {
+  if (plan.overlays.empty()) {
+    return "nothing to run: no attack, no honest condition, and --no-plain leaves out the rest";
+  }
+  std::string suits;
+  for (const Overlay& overlay : plan.overlays) {
+    suits += "; " + overlay.name() + " is for";
+    for (const std::string& name : overlay.suits) suits += " " + name;
+  }
+  std::vector<std::string> scenarios = plan.scenarios;
+  return "nothing to run: nothing asked for suits " + v2vouch::Listed(scenarios) + suits;
+}
+
 /// The jobs asked for. Empty with `problems` set where something is wrong.
 std::vector<Job> PlannedJobs(const Options& options, std::vector<std::string>& problems) {
   std::string problem;
@@ -117,9 +133,9 @@ std::vector<Job> PlannedJobs(const Options& options, std::vector<std::string>& p
   plan.seeds = options.seeds;
   plan.with_plain = !options.no_plain;
   for (const std::string& scenario : plan.scenarios) {
-    if (!fs::is_regular_file(v2vouch::sim::FindScenario(scenario))) {
-      problems.push_back(scenario + ": no such scenario");
-    }
+    std::string unknown;
+    v2vouch::sim::FindScenario(scenario, unknown);
+    if (!unknown.empty()) problems.push_back(unknown.substr(0, unknown.size() - 1));
   }
   auto jobs = Jobs(plan);
   std::set<std::string> keys;
@@ -129,6 +145,7 @@ std::vector<Job> PlannedJobs(const Options& options, std::vector<std::string>& p
       break;
     }
   }
+  if (jobs.empty() && problems.empty()) problems.push_back(WhyNothing(plan));
   std::size_t i = 1, n = 1;
   if (!options.shard.empty() && !ReadShard(options.shard, i, n)) {
     problems.push_back("--shard " + options.shard + ": must be I/N, 1 <= I <= N");
@@ -184,7 +201,17 @@ int RunCampaign(const Options& options) {
     }
     if (error) problems.push_back(options.out + ": " + error.message());
   }
+  Children children;
   std::string problem;
+  if (problems.empty() && !options.config.empty()) {  // Or every single run would say it.
+    const ChildResult check = children.Run(
+        {(settings.programs / "v2vouchd").string(), "--config", options.config, "--print-config"},
+        settings.scratch / ("check." + std::to_string(getpid())));
+    if (check.has_started && check.exit_code != 0) {
+      std::fputs(check.err.c_str(), stderr);
+      problems.push_back(options.config + ": cannot be used");
+    }
+  }
   if (problems.empty()) {
     settings.config = out / "vehicle.yaml";
     if (!SettleConfig(options.config, settings.config, problem)) problems.push_back(problem);
@@ -198,7 +225,10 @@ int RunCampaign(const Options& options) {
   for (const std::string& each : problems) Complain(each);
   if (!problems.empty()) return kUsage;
 
-  Children children;
+  if (jobs.empty()) {
+    Complain("--shard " + options.shard + " holds none of the runs: nothing to do here");
+    return kNothingToDo;
+  }
   Progress progress;
   std::signal(SIGINT, [](int) { stop_asked = 1; });
   std::signal(SIGTERM, [](int) { stop_asked = 1; });
@@ -214,7 +244,10 @@ int RunCampaign(const Options& options) {
     Complain("stopped; what is done is kept, the same call goes on from there");
     return kFailed;
   }
-  if (tally.failed > 0) Complain(std::to_string(tally.failed) + " runs failed");
+  if (tally.failed > 0) {
+    Complain(std::to_string(tally.failed) + " of " +
+             std::to_string(tally.total - tally.there_before) + " runs failed");
+  }
   return tally.failed > 0 ? kFailed : kGood;
 }
 
@@ -225,7 +258,9 @@ int Report(const Options& options) {
   const auto records = ReadRecords(folders, problems);
   for (const std::string& problem : problems) Complain(problem);
   if (records.empty()) {
-    Complain("no runs to report");
+    std::string names;
+    for (const fs::path& folder : folders) names += (names.empty() ? "" : ", ") + folder.string();
+    Complain("no runs to report: " + names + " holds no runs/*.json of a campaign");
     return kFailed;
   }
   const Summary summary = Summarise(records);
@@ -258,7 +293,6 @@ int main(int argc, char** argv) {
       "Tries attacks and honest conditions over scenarios, densities and seeds, and scores "
       "how the daemon fares.");
   app.footer(kExamples);
-  app.set_version_flag("--version", V2VOUCH_VERSION);
   Options options;
   app.add_option("--attacks", options.attacks,
                  "Ids (A5), variants (A5/lateral_8m), YAML files, all or none; comma-separated")
@@ -296,11 +330,7 @@ int main(int argc, char** argv) {
   app.add_option("--report", options.report, "Folder for index.html (made if absent)");
   app.add_flag("--json", options.as_json, "Figures as JSON on standard output");
   app.add_option("-l,--lcm-url", options.lcm_url, "Accepted for uniformity; nothing goes over LCM");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? kGood : kUsage;
-  }
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-campaign", argc, argv)) return *code;
   if (options.out.empty() == options.merge.empty()) {
     Complain("give --out DIR (or --merge DIR...)");
     return kUsage;
@@ -311,6 +341,7 @@ int main(int argc, char** argv) {
     options.no_plain = true;
   }
   const int ran = options.out.empty() ? kGood : RunCampaign(options);
+  if (ran == kNothingToDo) return kGood;
   if (ran == kUsage || stop_asked != 0) return ran;
   const int reported = Report(options);
   return std::max(ran, reported);

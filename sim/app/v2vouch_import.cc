@@ -2,12 +2,15 @@
 // v2vouch-import: recordings of others -> LCM log or scenario.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
+#include "daemon/base/did_you_mean.h"
+#include "daemon/program/command_line.h"
 #include "sim/app/import_kitti.h"
 #include "sim/app/import_output.h"
 #include "sim/import/comma2k19.h"
@@ -38,10 +41,29 @@ void Say(const char* what) {
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "v2vouch-import: %s\n", what);
 }
 
+// What a folder lacks to be a drive of the collection; "" where nothing.
+std::string WhyNoSegment(const std::string& folder) {
+  std::error_code failed;
+  if (!std::filesystem::is_directory(folder, failed)) return folder + ": is no folder";
+  std::vector<std::string> there, missing;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    there.push_back(entry.path().filename().string());
+  }
+  std::sort(there.begin(), there.end());
+  for (const char* name :
+       {"radar_tracks.csv", "ego_speed.csv", "imu_fwd_right_down.csv", "gnss_ublox.csv"}) {
+    if (std::find(there.begin(), there.end(), name) == there.end()) missing.emplace_back(name);
+  }
+  if (missing.empty()) return "";
+  return folder + ": is no comma2k19 drive: it lacks " + Listed(missing) +
+         (there.empty() ? " (it is empty)" : "; it holds " + Listed(there, 6));
+}
+
 int ImportComma2k19(const std::string& folder, const std::string& out,
                     const Comma2k19Options& options, bool as_json) {
   std::string error;
   Comma2k19Segment segment;
+  if (const std::string why = WhyNoSegment(folder); !why.empty()) return ImportFailed(why);
   Say("reading the drive");
   if (!ReadComma2k19(folder, segment, error)) return ImportFailed(error);
   const std::vector<ImportedEvent> events = ToEvents(segment, options, error);
@@ -92,7 +114,6 @@ int ImportSumo(const std::string& path, const std::string& out, SumoOptions opti
 
 int Run(int argc, char** argv) {
   CLI::App app{"Turns recordings of others into LCM logs and scenarios.", "v2vouch-import"};
-  app.set_version_flag("--version", "v2vouch-import " V2VOUCH_VERSION);
   app.footer(kExamples);
   app.require_subcommand(1);
   bool as_json = false;
@@ -175,11 +196,7 @@ int Run(int argc, char** argv) {
   kitti->add_option("--out", street.out, "log to write")->required();
   kitti->add_flag("--json", street.as_json, "figures as one line of JSON");
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kUsage;
-  }
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-import", argc, argv)) return *code;
   drive.gnss_latency_s = latency_ms * 1e-3;
   traffic.has_buildings = !no_buildings;
   if (kitti->parsed()) return ImportKitti(street);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // v2vouch-sim: a scenario -> sensor data, ego data, BSMs and truth, as a log or live over LCM.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "daemon/program/command_line.h"
 #include "sim/app/shipped_files.h"
 #include "sim/app/v2vouch_sim_run.h"
 #include "sim/world/overlay.h"
@@ -79,7 +79,6 @@ int main(int argc, char** argv) {
   CLI::App app("Simulates a drive: radar, camera, ego motion, GNSS, BSMs and truth of a scenario.",
                "v2vouch-sim");
   app.footer(kExamples);
-  app.set_version_flag("--version", V2VOUCH_VERSION);
   app.require_subcommand(1);
   RunOptions options;
   std::string scenario;
@@ -99,24 +98,27 @@ int main(int argc, char** argv) {
   run->add_option("--duration", options.duration_s, "Stop after this many seconds of the scenario")
       ->check(CLI::PositiveNumber);
   run->add_option("--sensors", sensors, "Instead of the scenario's own sensors.mode")
-      ->check(CLI::IsMember({"realistic", "ideal_points"}));
+      ->check(v2vouch::OneOf({"realistic", "ideal_points"}));
   run->add_option("--set", options.settings, "KEY=VALUE, a scenario setting; may be repeated");
   run->add_option(
       "--with", overlays,
       "Overlay, a YAML file or the name of a shipped one (attack, condition); may be repeated");
   run->add_flag("--json", options.json, "Report what was made as JSON on standard output");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kUsage;
-  }
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-sim", argc, argv)) return *code;
   if (*list) return List(as_json);
   if (options.out.empty() && !options.live) {
     std::fprintf(stderr, "v2vouch-sim: one of --out LOG.lcm and --live is needed\n");
     return kUsage;
   }
-  options.scenario = FindScenario(scenario);
-  for (const std::string& overlay : overlays) options.overlays.push_back(FindOverlay(overlay));
+  std::string problem;
+  options.scenario = FindScenario(scenario, problem);
+  for (const std::string& overlay : overlays) {
+    options.overlays.push_back(FindOverlay(overlay, problem));
+  }
+  if (!problem.empty()) {
+    std::fprintf(stderr, "%s", problem.c_str());
+    return kUsage;
+  }
   if (!sensors.empty()) options.settings.push_back("sensors.mode=" + sensors);
   return Run(options);
 }

@@ -141,20 +141,20 @@ Snapshot Take(const Tracker& tracker) {
 
 }  // namespace
 
-double BenchFigures::gospa_mean() const { return frames > 0 ? gospa_sum / frames : 0.0; }
+double BenchFigures::gospa_mean() const { return frames > 0 ? gospa_sum / frames : NAN; }
 
 double BenchFigures::rmse_m() const {
-  return assigned > 0 ? std::sqrt(square_error_m2 / static_cast<double>(assigned)) : 0.0;
+  return assigned > 0 ? std::sqrt(square_error_m2 / static_cast<double>(assigned)) : NAN;
 }
 
 double BenchFigures::ms_mean() const {
   double sum = 0.0;
   for (const double ms : step_ms) sum += ms;
-  return step_ms.empty() ? 0.0 : sum / static_cast<double>(step_ms.size());
+  return step_ms.empty() ? NAN : sum / static_cast<double>(step_ms.size());
 }
 
 double BenchFigures::ms_quantile(double share) const {
-  if (step_ms.empty()) return 0.0;
+  if (step_ms.empty()) return NAN;
   std::vector<double> sorted = step_ms;
   std::sort(sorted.begin(), sorted.end());
   const double place = std::ceil(share * static_cast<double>(sorted.size())) - 1.0;

@@ -35,6 +35,7 @@ struct BenchFigures {
   int switches = 0;               ///< A truth held by another track than the last that held it.
   std::vector<double> step_ms;    ///< Predict + associate + update of every frame, none skipped.
 
+  // NaN where there is nothing to take them of.
   [[nodiscard]] double gospa_mean() const;
   [[nodiscard]] double rmse_m() const;
   [[nodiscard]] double ms_mean() const;

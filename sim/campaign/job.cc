@@ -9,6 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "daemon/base/did_you_mean.h"
+
 namespace v2vouch::campaign {
 namespace {
 
@@ -61,6 +63,23 @@ std::vector<std::string> Suits(const std::string& file) {
 bool AreSuited(const Overlay& overlay, const Job& job) {
   return overlay.suits.empty() || std::find(overlay.suits.begin(), overlay.suits.end(),
                                             job.scenario_name()) != overlay.suits.end();
+}
+
+// What to say of a name that is not in the catalogue, or in it as the other kind.
+std::string Unknown(const std::string& item, Kind kind, const std::vector<Overlay>& catalogue) {
+  std::vector<std::string> names = {"all", "none"};
+  for (const Overlay& overlay : catalogue) {
+    const bool is_it = item == overlay.id || item == overlay.name();
+    if (is_it && overlay.kind != kind) {
+      return kind == Kind::kAttack ? ": is an honest condition: --honest " + item
+                                   : ": is an attack: --attacks " + item;
+    }
+    if (overlay.kind != kind) continue;
+    names.push_back(overlay.id);
+    names.push_back(overlay.name());
+  }
+  return std::string(": no such ") + (kind == Kind::kAttack ? "attack" : "honest condition") +
+         " in the catalogue" + DidYouMean(item, names) + "; `v2vouch-sim list` shows them";
 }
 
 std::string KeyPart(std::string_view text) {
@@ -120,7 +139,6 @@ std::vector<Overlay> Select(std::string_view list, Kind kind, const std::vector<
   const auto add = [&](const Overlay& overlay) {
     if (std::find(chosen.begin(), chosen.end(), overlay) == chosen.end()) chosen.push_back(overlay);
   };
-  const char* what = kind == Kind::kAttack ? "attack" : "honest condition";
   for (const std::string& item : Items(list)) {
     if (item == "none") continue;
     if (IsYamlPath(item)) {
@@ -142,7 +160,7 @@ std::vector<Overlay> Select(std::string_view list, Kind kind, const std::vector<
       is_known = true;
       add(overlay);
     }
-    if (!is_known) problems.push_back(item + ": no such " + what + " in the catalogue");
+    if (!is_known) problems.push_back(item + Unknown(item, kind, catalogue));
   }
   return chosen;
 }
@@ -152,7 +170,7 @@ std::vector<Job> Jobs(const Plan& plan) {
   const bool has_attack = std::any_of(overlays.begin(), overlays.end(), [](const Overlay& overlay) {
     return overlay.kind == Kind::kAttack;
   });
-  if (overlays.empty() || (plan.with_plain && has_attack))
+  if (plan.with_plain && (overlays.empty() || has_attack))
     overlays.insert(overlays.begin(), Overlay{});
   std::vector<Job> jobs;
   for (int i = 0; i < plan.seeds; ++i) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world/mounting.h"
 
+#include "daemon/base/did_you_mean.h"
+
 namespace v2vouch::sim {
 namespace {
 
@@ -44,6 +46,9 @@ VehicleConfig Mounted(const Scenario& scenario) {
 
 void CheckMounting(const Scenario& scenario, std::vector<std::string>& problems) {
   VehicleConfig vehicle = scenario.vehicle;
+  std::vector<std::string> names = {"antenna"};
+  for (const auto& radar : vehicle.radars) names.push_back("radar_" + SensorKey(radar.name));
+  for (const auto& camera : vehicle.cameras) names.push_back("camera_" + SensorKey(camera.name));
   for (std::size_t i = 0; i < scenario.mounting.size(); ++i) {
     const MountingErrorSpec& error = scenario.mounting[i];
     const std::string who = "mounting[" + std::to_string(i) + "]";
@@ -51,7 +56,8 @@ void CheckMounting(const Scenario& scenario, std::vector<std::string>& problems)
     const bool is_radar = FindRadar(vehicle, error.sensor) != nullptr;
     if (!is_radar && error.sensor != "antenna") {
       problems.push_back(who + ".sensor: '" + error.sensor +
-                         "' is neither antenna nor a radar_<name> or camera_<name> of the vehicle");
+                         "' is neither antenna nor a radar_<name> or camera_<name> of the vehicle" +
+                         DidYouMean(error.sensor, names));
       continue;
     }
     if (error.z_m != 0.0 || error.pitch_rad != 0.0 || error.roll_rad != 0.0 ||

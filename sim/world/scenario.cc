@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "daemon/base/did_you_mean.h"
 #include "daemon/config/yaml_writer.h"
 #include "sim/world/mounting.h"
 
@@ -17,7 +18,9 @@ bool CheckReferences(const Scenario& scenario, std::vector<std::string>& problem
     if (!routes.insert(route.name).second) problems.push_back("routes: " + route.name + " twice");
   }
   const auto need = [&](const std::string& name, const std::string& who) {
-    if (!routes.contains(name)) problems.push_back(who + ": no route is called '" + name + "'");
+    if (routes.contains(name)) return;
+    problems.push_back(who + ": no route is called '" + name + "'" +
+                       DidYouMean(name, std::vector<std::string>(routes.begin(), routes.end())));
   };
   if (scenario.ego.trajectory_id == 0) need(scenario.ego.drive.route, "ego.drive.route");
   if (scenario.ego.trajectory_id != 0 && scenario.trajectories.empty()) {

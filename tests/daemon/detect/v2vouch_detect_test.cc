@@ -22,6 +22,7 @@ TEST(V2vouchDetect, HelpAndUsage) {
   EXPECT_THAT(Detect("--version").output, HasSubstr("v2vouch-detect "));
   EXPECT_EQ(Detect("").code, 2);
   EXPECT_EQ(Detect("a.png --degrade upside_down").code, 2);
+  EXPECT_THAT(Detect("a.png --degrade nosy").output, HasSubstr("did you mean noisy?"));
   EXPECT_EQ(Detect("--log a.lcm").code, 2);
   const Finished bare = Detect("a.png");
   EXPECT_EQ(bare.code, 2);

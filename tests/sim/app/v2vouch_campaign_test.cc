@@ -52,6 +52,27 @@ TEST_F(V2vouchCampaign, TellsUsageErrorsFromFailures) {
   EXPECT_EQ(ExitCode("--merge " + Path("nosuch")), 1);
 }
 
+TEST_F(V2vouchCampaign, MistypedNamesAreToldWithTheNearest) {
+  const auto told = [&](const std::string& arguments, const char* hint) {
+    EXPECT_EQ(ExitCode(arguments + " --out " + Path("x")), 2) << arguments;
+    EXPECT_NE(Content("err").find(hint), std::string::npos) << Content("err");
+  };
+  told("--attacks A5/latral_8m", "did you mean A5/lateral_8m?");
+  told("--attacks none --honest H11/dens", "did you mean H11/dense?");
+  told("--attacks H1", "is an honest condition: --honest H1");
+  told("--attacks none --scenarios campain_urban", "did you mean campaign_urban?");
+  told("--atacks none", "did you mean --attacks?");
+}
+
+TEST_F(V2vouchCampaign, NothingToRunIsToldAsSuch) {
+  EXPECT_EQ(ExitCode("--attacks none --no-plain --out " + Path("x")), 2);
+  EXPECT_NE(Content("err").find("nothing to run"), std::string::npos) << Content("err");
+  EXPECT_EQ(ExitCode(tiny_ + "--shard 2/2 --out " + Path("x")), 0);
+  EXPECT_NE(Content("err").find("holds none of the runs"), std::string::npos) << Content("err");
+  EXPECT_EQ(ExitCode("--merge " + Path("x")), 1);
+  EXPECT_NE(Content("err").find("no runs to report"), std::string::npos) << Content("err");
+}
+
 TEST_F(V2vouchCampaign, ShardsMergedGiveTheFiguresOfTheWhole) {
   ASSERT_EQ(ExitCode(tiny_ + "--seeds 2 --jobs 2 --json --out " + Path("whole"), "whole.json"), 0);
   ASSERT_EQ(ExitCode(tiny_ + "--seeds 2 --shard 1/2 --json --out " + Path("a")), 0);
@@ -86,7 +107,7 @@ TEST_F(V2vouchCampaign, AnotherConfigurationWantsAnotherFolder) {
   EXPECT_EQ(ExitCode(tiny_ + "--config " + Path("own.yaml") + " --out " + Path("x")), 2);
   EXPECT_NE(Content("err").find("another configuration"), std::string::npos);
   std::ofstream(folder_ / "wrong.yaml") << "v2v: {no_such_key: 1.0}\n";
-  EXPECT_EQ(ExitCode(tiny_ + "--config " + Path("wrong.yaml") + " --out " + Path("y")), 1);
+  EXPECT_EQ(ExitCode(tiny_ + "--config " + Path("wrong.yaml") + " --out " + Path("y")), 2);
   EXPECT_NE(Content("err").find("no_such_key"), std::string::npos);
 }
 

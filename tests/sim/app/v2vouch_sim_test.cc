@@ -59,6 +59,22 @@ TEST_F(V2vouchSim, TellsUsageErrorsFromFailures) {
   EXPECT_EQ(ExitCode("run smoke --out /nonexistent/a.lcm"), 1);
 }
 
+TEST_F(V2vouchSim, MistypedNamesAreToldWithTheNearest) {
+  const auto told = [&](const std::string& arguments, const char* hint) {
+    const Finished done = Called(V2VOUCH_SIM, arguments + " --out " + Path("a.lcm"));
+    EXPECT_EQ(done.code, 2) << arguments;
+    EXPECT_NE(done.output.find(hint), std::string::npos) << done.output;
+  };
+  told("run left_trun", "did you mean left_turn?");
+  told("run smoke --with A5/latral_8m", "did you mean A5/lateral_8m?");
+  told("run smoke --with H11_dnse", "did you mean H11_dense?");
+  told("run smoke --sensors realsitic", "did you mean realistic?");
+  told("run smoke --set radio.base_los=0", "did you mean base_loss?");
+  told("run smoke --sede 3", "did you mean --seed?");
+  EXPECT_NE(Called(V2VOUCH_SIM, "rnu smoke").output.find("did you mean run?"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(Path("a.lcm")));
+}
+
 TEST_F(V2vouchSim, SettingsReachTheSimulation) {
   ASSERT_EQ(ExitCode("run smoke --duration 2 --set radio.base_loss=1 --out " + Path("a.lcm")), 0);
   for (const auto& [channel, bytes] : Messages(Path("a.lcm"))) EXPECT_NE(channel, "BSM");
