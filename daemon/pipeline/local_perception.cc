@@ -66,19 +66,23 @@ Occluder FootprintOf(const LocalTrack& track) {
 
 LocalPerception::LocalPerception(const PerceptionConfig& config)
     : vehicle_(std::make_shared<const VehicleConfig>(config.vehicle)),
+      ego_reading_(config.ego_motion),
       radar_preprocessor_(config.radar),
       visibility_(config.visibility, config.vehicle),
       tracker_(config.tracking, config.vehicle),
       last_radar_(config.vehicle.radars.size()),
       last_camera_(config.vehicle.cameras.size()) {}
 
-void LocalPerception::OnEgoMotion(const EgoMotion& sample) { odometry_.OnEgoMotion(sample); }
+void LocalPerception::OnEgoMotion(const EgoMotion& sample) {
+  odometry_.OnEgoMotion(ego_reading_.Read(sample));
+}
 
 std::optional<Reason> LocalPerception::OnRadarScan(const RadarScan& scan,
                                                    RadarPreparation& prepared, LocalFrame& frame) {
   const auto ego = odometry_.StateAt(scan.stamp);
   if (!ego) return Reason::kNoEgoMotion;
   const auto radar = static_cast<std::size_t>(scan.radar);
+  ego_reading_.OnRadarScan(scan, vehicle_->radars[radar]);
   if (!prepared.is_ready || prepared.ego != *ego) {
     radar_preprocessor_.Process(scan, vehicle_->radars[radar], *ego, prepared.measurements);
     prepared.ego = *ego;

@@ -8,6 +8,7 @@
 #include "daemon/base/reason.h"
 #include "daemon/base/scratch.h"
 #include "daemon/data/track.h"
+#include "daemon/odometry/ego_reading.h"
 #include "daemon/odometry/odometry.h"
 #include "daemon/pipeline/perception_config.h"
 #include "daemon/preprocessing/radar/radar_preprocessing.h"
@@ -40,6 +41,8 @@ class LocalPerception {
   std::optional<Reason> OnCameraDetections(const CameraDetections& detections, LocalFrame& frame);
 
   [[nodiscard]] const EgoOdometry& odometry() const { return odometry_; }
+  /// How EGO_MOTION is read: what was learnt and corrected.
+  [[nodiscard]] const EgoReading& ego_reading() const { return ego_reading_; }
   /// What each sensor can see, as of the last frame.
   [[nodiscard]] const VisibilityMap& visibility() const { return visibility_; }
   /// Tracks lost to numerics or overflow in the last frame.
@@ -59,6 +62,7 @@ class LocalPerception {
   void Finish(const EgoState& ego, LocalFrame& frame);
 
   std::shared_ptr<const VehicleConfig> vehicle_;
+  EgoReading ego_reading_;
   EgoOdometry odometry_;
   RadarPreprocessor radar_preprocessor_;
   VisibilityMap visibility_;

@@ -4,6 +4,7 @@
 #include "daemon/alignment/alignment.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/vehicle.h"
+#include "daemon/odometry/ego_reading.h"
 #include "daemon/pipeline/priority_config.h"
 #include "daemon/pipeline/timeline_config.h"
 #include "daemon/preprocessing/radar/radar_preprocessing.h"
@@ -17,6 +18,7 @@ namespace v2vouch {
 struct PerceptionConfig {
   VehicleConfig vehicle;
   TimelineConfig timeline;
+  EgoReadingConfig ego_motion;
   RadarPreprocessingConfig radar;
   VisibilityConfig visibility;
   TrackerConfig tracking;
@@ -28,6 +30,7 @@ struct PerceptionConfig {
   void Visit(Archive& a) {
     a.Field("vehicle", vehicle);
     a.Field("timeline", timeline);
+    a.Field("ego_motion", ego_motion);
     a.Field("radar", radar);
     a.Field("visibility", visibility);
     a.Field("tracking", tracking);

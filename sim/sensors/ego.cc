@@ -53,7 +53,7 @@ void OdometrySimulator::Measure(const Snapshot& snapshot, std::int64_t seq,
   motion.accel_long_sigma_mps2 = std::max(0.01, spec.accel_sigma_mps2);
   motion.accel_lat_mps2 = ego.speed_mps * ego.yaw_rate_radps + lat_noise;
   motion.accel_lat_sigma_mps2 = std::max(0.01, spec.accel_sigma_mps2);
-  motion.gear = ego_motion_t::GEAR_FORWARD;
+  motion.gear = ego.speed_mps < -0.1 ? ego_motion_t::GEAR_REVERSE : ego_motion_t::GEAR_FORWARD;
 }
 
 EgoGnssSimulator::EgoGnssSimulator(const World& world, std::uint64_t seed)

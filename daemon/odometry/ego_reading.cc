@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/odometry/ego_reading.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace v2vouch {
+namespace {
+
+// Of a yaw rate that is 0 because the car stands.
+constexpr double kHeldSigma_radps = 1e-4;
+constexpr double kDopplerSigma_mps = 0.1;
+
+}  // namespace
+
+EgoMotion EgoReading::Read(const EgoMotion& sample) {
+  EgoMotion read = sample;
+  const double speed_mps = speed_.Read(sample);
+  const SpeedCorrection correction =
+      config_.check_speed ? speed_.correction() : SpeedCorrection::kNone;
+  if (correction != SpeedCorrection::kNone) {
+    read.speed_mps = speed_mps;
+    // Its acceleration may come from the same wheels.
+    read.accel_long_mps2.reset();
+    const bool is_doppler =
+        correction == SpeedCorrection::kDeadband || correction == SpeedCorrection::kFrozen;
+    read.speed_sigma_mps = is_doppler
+                               ? std::max(kDopplerSigma_mps, sample.speed_sigma_mps)
+                               : std::max(1.0, std::abs(speed_.factor())) * sample.speed_sigma_mps;
+  }
+  Standstill standstill = Standstill::kNo;
+  if (speed_.still_s() >= GyroOffset::kSettle_s && !speed_.may_roll()) {
+    standstill = speed_.is_seen_standing() ? Standstill::kSeen : Standstill::kWheels;
+  }
+  yaw_rate_radps_ = read.yaw_rate_radps;
+  if (!config_.learn_gyro_offset) return read;
+  read.yaw_rate_radps = gyro_.Read(sample.stamp, sample.yaw_rate_radps, standstill);
+  if (gyro_.is_held()) {
+    read.yaw_rate_sigma_radps = std::min(kHeldSigma_radps, sample.yaw_rate_sigma_radps);
+  } else if (gyro_.is_learnt()) {
+    read.yaw_rate_sigma_radps = std::hypot(sample.yaw_rate_sigma_radps, gyro_.sigma_radps());
+  }
+  yaw_rate_radps_ = read.yaw_rate_radps;
+  return read;
+}
+
+bool EgoReading::OnRadarScan(const RadarScan& scan, const RadarConfig& radar) {
+  if (!config_.check_speed) return false;
+  const SpeedCorrection before = speed_.correction();
+  const double factor = speed_.factor();
+  world_.Read(scan, radar, yaw_rate_radps_);
+  speed_.OnScan(scan.stamp, world_);
+  return speed_.correction() != before || speed_.factor() != factor;
+}
+
+}  // namespace v2vouch

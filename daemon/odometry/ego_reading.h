@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "daemon/base/visit.h"
+#include "daemon/data/input.h"
+#include "daemon/data/vehicle.h"
+#include "daemon/odometry/gyro_offset.h"
+#include "daemon/odometry/speed_check.h"
+#include "daemon/odometry/standing_world.h"
+
+namespace v2vouch {
+
+/// Settings of how EGO_MOTION is read.
+struct EgoReadingConfig {
+  bool learn_gyro_offset = true;  ///< At standstill; a standing car does not turn.
+  bool check_speed = true;  ///< Against gear and the Doppler of the standing world; correct it.
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("learn_gyro_offset", learn_gyro_offset);
+    a.Field("check_speed", check_speed);
+  }
+};
+
+/// What EGO_MOTION means: the car's own motion as its sensors report it, checked against each other
+/// and against the Doppler of the standing world, corrected where the fault is known. Own sensors
+/// only, so LOCAL may use it. Copyable, fixed size; a function of inputs in order of time.
+class EgoReading {
+ public:
+  explicit EgoReading(const EgoReadingConfig& config = {}) : config_(config) {}
+
+  /// One sample. @return the same with speed, yaw rate and their sigma corrected.
+  EgoMotion Read(const EgoMotion& sample);
+  /// One radar scan. @return true where it changed how the speed is read.
+  bool OnRadarScan(const RadarScan& scan, const RadarConfig& radar);
+
+  [[nodiscard]] const GyroOffset& gyro() const { return gyro_; }
+  [[nodiscard]] const SpeedCheck& speed() const { return speed_; }
+
+ private:
+  EgoReadingConfig config_;
+  GyroOffset gyro_;
+  SpeedCheck speed_;
+  double yaw_rate_radps_ = 0.0;
+  struct Working : StandingWorld {  // Means nothing from one scan to the next.
+    Working() = default;
+    Working(const Working&) : StandingWorld() {}
+    Working& operator=(const Working&) { return *this; }
+  } world_;
+};
+
+}  // namespace v2vouch
