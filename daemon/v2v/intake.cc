@@ -20,14 +20,6 @@ std::size_t Remembered(const IntakeConfig& config) {
   return static_cast<std::size_t>(config.max_total_rate_hz * config.repeat_memory_s);
 }
 
-// In reverse some units tell the direction of motion, others that of the body. No vehicle turns
-// round between two messages: the reading that keeps its direction is meant.
-void ReadReverse(const Claim& last, Claim& claim) {
-  const bool is_reverse = std::signbit(claim.speed_mps);  // -0.0 where it stands in reverse gear.
-  if (!is_reverse || !claim.has_course || !last.has_course) return;
-  if (claim.course_E.dot(last.course_E) < 0.0) claim.course_E = -claim.course_E;
-}
-
 }  // namespace
 
 BsmIntake::BsmIntake(const IntakeConfig& config)
@@ -38,6 +30,7 @@ BsmIntake::BsmIntake(const IntakeConfig& config)
   senders_.reserve(static_cast<std::size_t>(config.max_senders));
   accounts_.reserve(static_cast<std::size_t>(config.max_senders));
   checks_.resize(static_cast<std::size_t>(config.max_senders));
+  directions_.resize(checks_.size());
   free_slots_.resize(checks_.size());
   // The lowest is handed out first.
   std::iota(free_slots_.rbegin(), free_slots_.rend(), 0U);
@@ -91,18 +84,21 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
       return Reason::kBsmRate;
     }
     account.tokens -= 1.0;
-    ReadReverse(senders_[index].latest, claim);
-    if (!AdvanceSender(senders_[index], bsm, claim)) {
+    const bool is_reread = directions_[account.slot].Read(bsm.transmission, claim);
+    if (is_reread) checks_[account.slot].OnReread();
+    if (!AdvanceSender(senders_[index], bsm, claim, is_reread)) {
       Remove(index);
       return Reason::kSenderNumerics;
     }
   } else {
     if (const auto refusal = MakeRoom(bsm.sender, bsm.stamp)) return *refusal;
     index = IndexOf(bsm.sender);
-    const auto at = static_cast<std::ptrdiff_t>(index);
-    senders_.insert(senders_.begin() + at, StartSender(bsm, claim));
     const std::uint32_t slot = free_slots_.back();
     free_slots_.pop_back();
+    directions_[slot] = DirectionReading{};
+    directions_[slot].Read(bsm.transmission, claim);
+    const auto at = static_cast<std::ptrdiff_t>(index);
+    senders_.insert(senders_.begin() + at, StartSender(bsm, claim));
     checks_[slot] = SenderChecks{};
     checks_[slot].OnHeard(bsm.stamp);
     accounts_.insert(accounts_.begin() + at,

@@ -12,6 +12,7 @@
 #include "daemon/data/input.h"
 #include "daemon/data/track.h"
 #include "daemon/geodesy/ecef.h"
+#include "daemon/v2v/direction_reading.h"
 #include "daemon/v2v/knock_memory.h"
 #include "daemon/v2v/message_check_config.h"
 #include "daemon/v2v/repeat_memory.h"
@@ -139,7 +140,7 @@ class BsmIntake {
   struct Account {
     SenderId sender = 0;
     bool is_pinned = false;
-    std::uint32_t slot = 0;  // Of checks_.
+    std::uint32_t slot = 0;  // Of checks_ and directions_.
     double tokens = 0.0;
     Timestamp last{};
   };
@@ -154,6 +155,7 @@ class BsmIntake {
   std::vector<SenderTrack> senders_;
   std::vector<Account> accounts_;
   std::vector<SenderChecks> checks_;  // By slot: they stay where they are when senders come and go.
+  std::vector<DirectionReading> directions_;  // By slot too.
   std::vector<std::uint32_t> free_slots_;
   RepeatMemory repeats_;
   KnockMemory knocks_;

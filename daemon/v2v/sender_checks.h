@@ -28,6 +28,13 @@ class SenderChecks {
   void OnImplausible() { implausible_.OnMessage(true); }
   /// The same core was heard under another id (C3). Who copied whom is not known: relays exist.
   void OnContested(Timestamp stamp) { contested_ = stamp; }
+  /// What its heading means has turned out to be the other way (DirectionReading): ways and speeds
+  /// of before were misread.
+  void OnReread() {
+    path_.Restart();
+    last_path_.reset();
+    speed_step_ = {};
+  }
 
   /// Judges an accepted claim, already taken into `track`.
   /// @return the gravest finding; of equals the first of: contested_core, message_rate,

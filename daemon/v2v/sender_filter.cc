@@ -116,7 +116,7 @@ SenderTrack StartSender(const Bsm& bsm, const Claim& claim) {
   return track;
 }
 
-bool AdvanceSender(SenderTrack& track, const Bsm& bsm, const Claim& claim) {
+bool AdvanceSender(SenderTrack& track, const Bsm& bsm, const Claim& claim, bool is_reread) {
   const double dt = std::max(0.0, ToSeconds(claim.received - track.latest.received));
   // Half of the counter's circle: more cannot be told from a repeat or a restart of the sender.
   const int missing = ((bsm.msg_count - track.msg_count - 1) % 128 + 128) % 128;
@@ -129,7 +129,9 @@ bool AdvanceSender(SenderTrack& track, const Bsm& bsm, const Claim& claim) {
   track.latest_nis.reset();
   bool is_broken =
       dt > kLongestSilence_s || displacement > std::max(kMaxSpeed_mps * dt, kMinJump_m);
-  if (!is_broken) {
+  if (is_reread && !is_broken) {
+    StartMotion(track, claim);
+  } else if (!is_broken) {
     if (track.state.mean.head<2>().norm() > kReanchor_m) Reanchor(track, claim);
     PredictCtra(track.state, dt, MotionNoise{});
     const Measurement m = Measure(track.plane, claim);

@@ -113,6 +113,59 @@ TEST_F(IntakeFindings, BackingUpIsHonestWhicheverDirectionIsTold) {
   }
 }
 
+// What a unit means by heading is settled by where it goes, whatever its first message was like.
+TEST_F(IntakeFindings, BackingUpIsReadByDisplacementWhateverTheUnitTells) {
+  const auto east = EgoAtCrossroads().course_E;
+  for (const Transmission gear : {Transmission::kReverse, Transmission::kUnavailable,
+                                  Transmission::kNeutral, Transmission::kPark}) {
+    for (const bool tells_body : {false, true}) {
+      for (const double parked_s : {0.0, 3.0}) {  // Heard while it stands, or backing at once.
+        BsmIntake intake{IntakeConfig{}};
+        TalkingCar car;
+        int wrong = 0;
+        int findings = 0;
+        for (int i = 0; i < 120; ++i) {
+          const double t = 0.1 * i - parked_s;
+          car.speed_mps = t < 0.0 ? 0.0 : parked_s > 0.0 ? std::max(-3.0, -1.5 * t) : -3.0;
+          car.Drive(0.1);
+          Bsm bsm = car.Say();
+          bsm.transmission = t < 0.0 && gear == Transmission::kReverse ? Transmission::kPark : gear;
+          bsm.course_rad = tells_body || t < 0.0 ? 0.0 : kPi;
+          const auto claim = intake.Accept(bsm, EgoAtCrossroads());
+          ASSERT_EQ(WhyNot(claim), kTaken);
+          if (claim->finding) ++findings;
+          const Eigen::Vector3d velocity = claim->speed_mps * claim->course_E;
+          if (t > 2.0) wrong += (velocity - car.speed_mps * east).norm() > 0.1;
+        }
+        EXPECT_EQ(wrong, 0) << static_cast<int>(gear) << tells_body << parked_s;
+        EXPECT_EQ(findings, 0) << static_cast<int>(gear) << tells_body << parked_s;
+      }
+    }
+  }
+}
+
+TEST_F(IntakeFindings, AForwardGearIsHeldToAndSoIsAFastCar) {
+  for (const double speed : {3.0, 12.0}) {
+    for (const Transmission gear : {Transmission::kForward, Transmission::kUnavailable}) {
+      if (speed < 6.0 && gear == Transmission::kUnavailable) continue;  // It backs, perhaps.
+      BsmIntake intake{IntakeConfig{}};
+      TalkingCar car;
+      car.speed_mps = speed;
+      int findings = 0;
+      for (int i = 0; i < 150; ++i) {
+        car.Drive(0.1);
+        Bsm bsm = car.Say();
+        bsm.transmission = gear;
+        bsm.course_rad = kPi;  // Goes east.
+        const auto claim = intake.Accept(bsm, EgoAtCrossroads());
+        ASSERT_EQ(WhyNot(claim), kTaken);
+        findings += claim->finding && claim->finding->check == "course_against_path";
+      }
+      EXPECT_GT(findings, 50) << speed;
+    }
+  }
+}
+
 TEST_F(IntakeFindings, TheGravestIsTold) {
   HearFor(1.0);
   std::vector<Finding> findings;
