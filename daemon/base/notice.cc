@@ -15,6 +15,15 @@ constexpr std::array<Words, kNoticeKindCount> kWords = {{
     {"clock_stuck", "this source repeats one time of measurement; restart it"},
     {"input_silent", "is the source running, and does it publish on this channel?"},
     {"over_rate", "this source sends far more often than such a sensor measures; lower its rate"},
+    {"gyro_offset", "learnt at standstill and corrected; check the yaw rate sensor's offset"},
+    {"gear_contradicts", "is the speed without sign, or the gear not connected?"},
+    {"speed_deadband", "the wheel speed reads 0 at walking pace; radar Doppler is used instead"},
+    {"speed_sign", "EGO_MOTION speed must be negative in reverse; corrected by gear and Doppler"},
+    {"speed_scale", "check unit (m/s) and tyre size of EGO_MOTION speed; corrected by Doppler"},
+    {"speed_frozen",
+     "the speed source repeats one figure; restart it; radar Doppler is used instead"},
+    {"speed_suspect",
+     "EGO_MOTION speed disagrees with radar Doppler; check unit, sign and radar mounting"},
 }};
 
 static_assert(!kWords.back().name.empty(), "one entry per kind");

@@ -12,11 +12,18 @@ namespace v2vouch {
 /// A condition that is in force and that whoever runs the daemon should know. Each is published in
 /// V2VOUCH_STATUS as long as it holds, and logged when it begins and ends.
 enum class NoticeKind : std::uint8_t {
-  kClockAhead,   ///< The source's stamps are ahead of what the other own sensors agree on [s].
-  kClockBehind,  ///< The same, behind: its frames are too late to be used [s].
-  kClockStuck,   ///< The source's stamps stand still while messages arrive [s of arrival].
-  kInputSilent,  ///< Nothing has arrived from a configured own source for so long [s].
-  kOverRate,     ///< The source sends more messages than any such sensor; some are refused.
+  kClockAhead,       ///< The source's stamps are ahead of what the other own sensors agree on [s].
+  kClockBehind,      ///< The same, behind: its frames are too late to be used [s].
+  kClockStuck,       ///< The source's stamps stand still while messages arrive [s of arrival].
+  kInputSilent,      ///< Nothing has arrived from a configured own source for so long [s].
+  kOverRate,         ///< The source sends more messages than any such sensor; some are refused.
+  kGyroOffset,       ///< Learnt at standstill and taken off, where worth telling [deg/s].
+  kGearContradicts,  ///< Gear and sign of the speed disagree [m/s as reported].
+  kSpeedDeadband,    ///< The speed reads 0 while the world moves by: Doppler's is used [m/s].
+  kSpeedSign,        ///< The speed is turned round [m/s as reported].
+  kSpeedScale,       ///< The speed is multiplied by this factor.
+  kSpeedFrozen,      ///< The reported speed does not change any more: Doppler's is used [m/s].
+  kSpeedSuspect,     ///< Doppler of the standing world shows another speed; not corrected [m/s].
   kCount
 };
 

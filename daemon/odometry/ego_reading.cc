@@ -10,10 +10,12 @@ namespace {
 // Of a yaw rate that is 0 because the car stands.
 constexpr double kHeldSigma_radps = 1e-4;
 constexpr double kDopplerSigma_mps = 0.1;
+constexpr double kTellOffset_radps = FromDegrees(0.1);  // 6 degrees a minute.
 
 }  // namespace
 
 EgoMotion EgoReading::Read(const EgoMotion& sample) {
+  newest_ = sample;
   EgoMotion read = sample;
   const double speed_mps = speed_.Read(sample);
   const SpeedCorrection correction =
@@ -44,13 +46,40 @@ EgoMotion EgoReading::Read(const EgoMotion& sample) {
   return read;
 }
 
-bool EgoReading::OnRadarScan(const RadarScan& scan, const RadarConfig& radar) {
-  if (!config_.check_speed) return false;
-  const SpeedCorrection before = speed_.correction();
-  const double factor = speed_.factor();
+std::optional<Timestamp> EgoReading::OnRadarScan(const RadarScan& scan, const RadarConfig& radar) {
+  if (!config_.check_speed) return std::nullopt;
   world_.Read(scan, radar, yaw_rate_radps_);
   speed_.OnScan(scan.stamp, world_);
-  return speed_.correction() != before || speed_.factor() != factor;
+  return speed_.misread_since();
+}
+
+void EgoReading::CollectNotices(std::vector<Notice>& notices) const {
+  const auto add = [&](NoticeKind kind, double value) {
+    notices.push_back({kind, {NoticeSubject::Kind::kEgoMotion, 0}, value});
+  };
+  if (gyro_.is_learnt() && std::abs(gyro_.offset_radps()) >= kTellOffset_radps) {
+    add(NoticeKind::kGyroOffset, ToDegrees(gyro_.offset_radps()));
+  }
+  if (!config_.check_speed) return;
+  const double told_mps = speed_.reported_speed_mps();
+  if (speed_.gear_contradicts()) add(NoticeKind::kGearContradicts, told_mps);
+  switch (speed_.correction()) {
+    case SpeedCorrection::kNone:
+      break;
+    case SpeedCorrection::kDeadband:
+      add(NoticeKind::kSpeedDeadband, speed_.doppler_speed_mps());
+      break;
+    case SpeedCorrection::kSign:
+      add(NoticeKind::kSpeedSign, told_mps);
+      break;
+    case SpeedCorrection::kScale:
+      add(NoticeKind::kSpeedScale, speed_.factor());
+      break;
+    case SpeedCorrection::kFrozen:
+      add(NoticeKind::kSpeedFrozen, speed_.doppler_speed_mps());
+      break;
+  }
+  if (speed_.is_suspect()) add(NoticeKind::kSpeedSuspect, speed_.doppler_speed_mps());
 }
 
 }  // namespace v2vouch

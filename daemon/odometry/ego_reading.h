@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <vector>
+
+#include "daemon/base/notice.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/input.h"
 #include "daemon/data/vehicle.h"
@@ -31,8 +35,13 @@ class EgoReading {
 
   /// One sample. @return the same with speed, yaw rate and their sigma corrected.
   EgoMotion Read(const EgoMotion& sample);
-  /// One radar scan. @return true where it changed how the speed is read.
-  bool OnRadarScan(const RadarScan& scan, const RadarConfig& radar);
+  /// One radar scan. @return where it changed how the speed is read: since when that was misread.
+  std::optional<Timestamp> OnRadarScan(const RadarScan& scan, const RadarConfig& radar);
+
+  /// The newest sample as it came; to be read again where a scan changed its meaning.
+  [[nodiscard]] const EgoMotion& newest() const { return newest_; }
+  /// Adds what was learnt and corrected, where worth telling.
+  void CollectNotices(std::vector<Notice>& notices) const;
 
   [[nodiscard]] const GyroOffset& gyro() const { return gyro_; }
   [[nodiscard]] const SpeedCheck& speed() const { return speed_; }
@@ -41,6 +50,7 @@ class EgoReading {
   EgoReadingConfig config_;
   GyroOffset gyro_;
   SpeedCheck speed_;
+  EgoMotion newest_;
   double yaw_rate_radps_ = 0.0;
   struct Working : StandingWorld {  // Means nothing from one scan to the next.
     Working() = default;

@@ -125,6 +125,7 @@ void SpeedCheck::OnScan(Timestamp stamp, StandingWorld& world) {
   const double dt_s =
       scanned_ == Timestamp{} ? 0.0 : std::clamp(ToSeconds(stamp - scanned_), 0.0, kLongestStep_s);
   scanned_ = stamp;
+  misread_since_.reset();
   if (is_replaced_) {
     Track(stamp, world);
     return;
@@ -224,6 +225,7 @@ void SpeedCheck::Replace(Timestamp stamp, bool is_frozen) {
   is_frozen_ = is_frozen;
   doppler_ = other_;
   doppler_seen_ = stamp;
+  misread_since_ = other_since_;
   Forget();
 }
 
@@ -259,6 +261,7 @@ void SpeedCheck::DecideRolling(Timestamp stamp, double held_s) {
     if (is_settled) {
       sign_ = -sign_;
       sign_is_seen_ = true;
+      misread_since_ = other_since_;
       Forget();
       return;
     }
@@ -274,6 +277,7 @@ void SpeedCheck::DecideRolling(Timestamp stamp, double held_s) {
       scale_ = 1.0;
       ratio_ = 1.0;
       ratio_s_ = 0.0;
+      misread_since_ = other_since_;
       Forget();
       return;
     }
@@ -304,7 +308,10 @@ void SpeedCheck::LearnScale(double dt_s, StandingWorld& world) {
   if (is_learnt && from_one > kScaleOn) scale_ = ratio_;
   if (from_one < kScaleOff) scale_ = 1.0;
   // From a changed speed on, what was counted for the old one says nothing.
-  if (std::abs(scale_ - before) > 0.5 * kScaleOn) Forget();
+  if (std::abs(scale_ - before) > 0.5 * kScaleOn) {
+    misread_since_ = scanned_ - FromSeconds(kScaleLearn_s);
+    Forget();
+  }
 }
 
 }  // namespace v2vouch

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "daemon/base/time.h"
 #include "daemon/data/input.h"
 #include "daemon/odometry/standing_world.h"
@@ -47,6 +49,9 @@ class SpeedCheck {
   [[nodiscard]] bool is_suspect() const { return is_suspect_; }
   /// Forward gear and negative speed, or reverse gear and positive speed, for 0.5 s.
   [[nodiscard]] bool gear_contradicts() const { return contradicted_s_ >= 0.5; }
+
+  /// Set by the scan that changed how the speed is read: since when it had been misread.
+  [[nodiscard]] std::optional<Timestamp> misread_since() const { return misread_since_; }
 
   /// The wheel speed has been 0 for so long [s].
   [[nodiscard]] double still_s() const { return still_s_; }
@@ -104,6 +109,7 @@ class SpeedCheck {
   bool is_suspect_ = false;
   // Of the scans.
   Timestamp scanned_{};
+  std::optional<Timestamp> misread_since_;
   Sum used_sum_, other_sum_;
   double other_ = 0.0;
   double rival_ = 0.0;  // Cells of a third speed beyond the other's.

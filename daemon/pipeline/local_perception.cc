@@ -79,10 +79,13 @@ void LocalPerception::OnEgoMotion(const EgoMotion& sample) {
 
 std::optional<Reason> LocalPerception::OnRadarScan(const RadarScan& scan,
                                                    RadarPreparation& prepared, LocalFrame& frame) {
-  const auto ego = odometry_.StateAt(scan.stamp);
-  if (!ego) return Reason::kNoEgoMotion;
   const auto radar = static_cast<std::size_t>(scan.radar);
-  ego_reading_.OnRadarScan(scan, vehicle_->radars[radar]);
+  if (!odometry_.StateAt(scan.stamp)) return Reason::kNoEgoMotion;
+  if (const auto since = ego_reading_.OnRadarScan(scan, vehicle_->radars[radar])) {
+    odometry_.OnEgoMotion(ego_reading_.Read(EgoMotion(ego_reading_.newest())));
+    tracker_.ForgetUnpicturedSince(*since);
+  }
+  const auto ego = odometry_.StateAt(scan.stamp);
   if (!prepared.is_ready || prepared.ego != *ego) {
     radar_preprocessor_.Process(scan, vehicle_->radars[radar], *ego, prepared.measurements);
     prepared.ego = *ego;

@@ -323,6 +323,7 @@ const BiasReport& Perception::bias_report() const { return state_->bias->report(
 
 void Perception::CollectNotices(std::vector<Notice>& notices) const {
   state_->clock.CollectNotices(notices);
+  state_->timeline.local().ego_reading().CollectNotices(notices);
 }
 
 bool Perception::IsRadarAlive(int radar) const {

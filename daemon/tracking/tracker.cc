@@ -501,6 +501,14 @@ void Tracker::Conclude(double dt_s) {
   }
 }
 
+void Tracker::ForgetUnpicturedSince(Timestamp since) {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (tracks_[i].start >= since && tracks_[i].camera_hits == 0) hidden_[i].is_dead = true;
+  }
+  RemoveDead();
+  std::erase_if(recent_, [](const RecentReturn& at) { return at.is_moving; });
+}
+
 void Tracker::RemoveDead() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {

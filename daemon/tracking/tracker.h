@@ -147,6 +147,10 @@ class Tracker {
                    const DetectabilityOf& detectability);
   [[nodiscard]] std::span<const PoseUpdate> pose_updates() const { return pose_updates_; }
 
+  /// The ego's own speed was misread since then: what radar alone has started from its Doppler is
+  /// void, and standing returns must not keep it alive.
+  void ForgetUnpicturedSince(Timestamp since);
+
   /// All tracks, unconfirmed ones included, ordered by id.
   [[nodiscard]] std::span<const LocalTrack> tracks() const { return tracks_; }
   /// Which measurement each track was given by the last update; clusters of one vehicle as one.
