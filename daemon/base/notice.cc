@@ -24,6 +24,7 @@ constexpr std::array<Words, kNoticeKindCount> kWords = {{
      "the speed source repeats one figure; restart it; radar Doppler is used instead"},
     {"speed_suspect",
      "EGO_MOTION speed disagrees with radar Doppler; check unit, sign and radar mounting"},
+    {"yaw_rate_suspect", "EGO_MOTION yaw rate disagrees with radar Doppler; is the sensor frozen?"},
 }};
 
 static_assert(!kWords.back().name.empty(), "one entry per kind");

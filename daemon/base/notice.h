@@ -24,6 +24,7 @@ enum class NoticeKind : std::uint8_t {
   kSpeedScale,       ///< The speed is multiplied by this factor.
   kSpeedFrozen,      ///< The reported speed does not change any more: Doppler's is used [m/s].
   kSpeedSuspect,     ///< Doppler of the standing world shows another speed; not corrected [m/s].
+  kYawRateSuspect,   ///< Doppler of the standing world shows another yaw rate, by [deg/s].
   kCount
 };
 

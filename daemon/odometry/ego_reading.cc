@@ -50,6 +50,7 @@ std::optional<Timestamp> EgoReading::OnRadarScan(const RadarScan& scan, const Ra
   if (!config_.check_speed) return std::nullopt;
   world_.Read(scan, radar, yaw_rate_radps_);
   speed_.OnScan(scan.stamp, world_);
+  yaw_.OnScan(scan.stamp, world_, speed_.used_speed_mps());
   return speed_.misread_since();
 }
 
@@ -80,6 +81,7 @@ void EgoReading::CollectNotices(std::vector<Notice>& notices) const {
       break;
   }
   if (speed_.is_suspect()) add(NoticeKind::kSpeedSuspect, speed_.doppler_speed_mps());
+  if (yaw_.is_suspect()) add(NoticeKind::kYawRateSuspect, ToDegrees(yaw_.missing_radps()));
 }
 
 }  // namespace v2vouch

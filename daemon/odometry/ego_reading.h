@@ -5,26 +5,15 @@
 #include <vector>
 
 #include "daemon/base/notice.h"
-#include "daemon/base/visit.h"
 #include "daemon/data/input.h"
 #include "daemon/data/vehicle.h"
+#include "daemon/odometry/ego_reading_config.h"
 #include "daemon/odometry/gyro_offset.h"
 #include "daemon/odometry/speed_check.h"
 #include "daemon/odometry/standing_world.h"
+#include "daemon/odometry/yaw_check.h"
 
 namespace v2vouch {
-
-/// Settings of how EGO_MOTION is read.
-struct EgoReadingConfig {
-  bool learn_gyro_offset = true;  ///< At standstill; a standing car does not turn.
-  bool check_speed = true;  ///< Against gear and the Doppler of the standing world; correct it.
-
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("learn_gyro_offset", learn_gyro_offset);
-    a.Field("check_speed", check_speed);
-  }
-};
 
 /// What EGO_MOTION means: the car's own motion as its sensors report it, checked against each other
 /// and against the Doppler of the standing world, corrected where the fault is known. Own sensors
@@ -45,11 +34,13 @@ class EgoReading {
 
   [[nodiscard]] const GyroOffset& gyro() const { return gyro_; }
   [[nodiscard]] const SpeedCheck& speed() const { return speed_; }
+  [[nodiscard]] const YawCheck& yaw() const { return yaw_; }
 
  private:
   EgoReadingConfig config_;
   GyroOffset gyro_;
   SpeedCheck speed_;
+  YawCheck yaw_;
   EgoMotion newest_;
   double yaw_rate_radps_ = 0.0;
   struct Working : StandingWorld {  // Means nothing from one scan to the next.

@@ -44,8 +44,6 @@ double Gate(double speed_mps) { return kDiffer_mps + kDifferShare * std::abs(spe
 
 }  // namespace
 
-double SpeedCheck::Used() const { return is_replaced_ ? doppler_ : sign_ * unit_ * scale_ * told_; }
-
 bool SpeedCheck::IsWorld(const Sum& sum) const {
   return sum.cells >= kWorldCells && std::min(sum.left, sum.right) >= kWorldSide;
 }
@@ -117,7 +115,7 @@ double SpeedCheck::Read(const EgoMotion& sample) {
   const bool is_opposed = (gear_ == Gear::kReverse && speed > kRolls_mps) ||
                           (gear_ == Gear::kForward && speed < -kRolls_mps);
   contradicted_s_ = is_opposed ? contradicted_s_ + dt_s : 0.0;
-  return Used();
+  return used_speed_mps();
 }
 
 void SpeedCheck::OnScan(Timestamp stamp, StandingWorld& world) {
@@ -154,7 +152,7 @@ void SpeedCheck::Track(Timestamp stamp, StandingWorld& world) {
 
 // Adds this scan to what speaks for the speed in use and for another one.
 void SpeedCheck::Compare(Timestamp stamp, double dt_s, StandingWorld& world) {
-  const double used = Used();
+  const double used = used_speed_mps();
   const double gate = Gate(used);
   const double share = std::exp(-dt_s / kFade_s);
   used_sum_.Fade(share);
@@ -245,7 +243,7 @@ void SpeedCheck::DecideStill(Timestamp stamp, double held_s) {
 }
 
 void SpeedCheck::DecideRolling(Timestamp stamp, double held_s) {
-  const double used = Used();
+  const double used = used_speed_mps();
   const bool is_mirror =
       std::abs(other_ + used) <= std::max(kDiffer_mps, kMirrorShare * std::abs(used));
   if (is_mirror) {

@@ -45,6 +45,7 @@ class SpeedCheck {
   [[nodiscard]] double factor() const { return sign_ * unit_ * scale_; }
   /// Doppler's idea of the speed, where it differs from the reported one [m/s].
   [[nodiscard]] double doppler_speed_mps() const { return is_replaced_ ? doppler_ : other_; }
+  [[nodiscard]] double used_speed_mps() const { return is_replaced_ ? doppler_ : factor() * told_; }
   [[nodiscard]] double reported_speed_mps() const { return told_; }
   [[nodiscard]] bool is_suspect() const { return is_suspect_; }
   /// Forward gear and negative speed, or reverse gear and positive speed, for 0.5 s.
@@ -76,7 +77,6 @@ class SpeedCheck {
       right += support.right;
     }
   };
-  [[nodiscard]] double Used() const;
   [[nodiscard]] bool IsWorld(const Sum& sum) const;
   void Track(Timestamp stamp, StandingWorld& world);
   void Compare(Timestamp stamp, double dt_s, StandingWorld& world);

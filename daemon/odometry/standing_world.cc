@@ -35,7 +35,6 @@ void StandingWorld::Read(const RadarScan& scan, const RadarConfig& radar, double
   votes_.clear();
   // A full radar does not cost more than 400 votes: every second, third, ... return is asked.
   const std::size_t stride = 1 + scan.detections.size() / kMostVotes;
-  Cells seen;
   for (std::size_t i = 0; i < scan.detections.size(); i += stride) {
     const RadarDetection& d = scan.detections[i];
     if (!std::isfinite(d.range_m) || !std::isfinite(d.azimuth_rad) ||
@@ -53,14 +52,13 @@ void StandingWorld::Read(const RadarScan& scan, const RadarConfig& radar, double
     vote.sigma_mps =
         std::hypot(radar.range_rate_sigma_mps, vote.speed_mps * s * radar.azimuth_sigma_rad) /
         std::abs(c);
+    vote.lever_m = radar.x_m * s / c - radar.y_m;
     const double x_m = radar.x_m + d.range_m * c;
     const double y_m = radar.y_m + d.range_m * s;
     vote.cell = CellOf(x_m, y_m);
     vote.side = std::abs(y_m) < kBeside_m ? 0 : (y_m > 0.0 ? 1 : -1);
-    seen.set(static_cast<std::size_t>(vote.cell));
     votes_.push_back(vote);
   }
-  cells_ = static_cast<int>(seen.count());
   std::sort(votes_.begin(), votes_.end(), [](const Vote& a, const Vote& b) {
     return std::tie(a.speed_mps, a.cell, a.sigma_mps, a.side) <
            std::tie(b.speed_mps, b.cell, b.sigma_mps, b.side);

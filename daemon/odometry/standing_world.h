@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "daemon/data/input.h"
@@ -29,24 +30,25 @@ struct SpeedSupport {
 /// memory only: holds no state from scan to scan.
 class StandingWorld {
  public:
+  struct Vote {
+    double speed_mps = 0.0;
+    double sigma_mps = 0.0;
+    double lever_m = 0.0;  ///< d speed / d yaw rate error = x tan a - y.
+    int cell = 0;
+    int side = 0;  ///< -1 right, 0 ahead or behind, 1 left.
+  };
+
   void Read(const RadarScan& scan, const RadarConfig& radar, double yaw_rate_radps);
 
   /// Who agrees with `speed_mps` to within 3 sigma (0.2 m/s at least).
   [[nodiscard]] SpeedSupport Of(double speed_mps) const;
   /// The speed with most support, among those from `low_mps` to `high_mps`.
   [[nodiscard]] SpeedSupport Strongest(double low_mps, double high_mps);
-  /// Cells with any vote.
-  [[nodiscard]] int cells() const { return cells_; }
+  /// By speed.
+  [[nodiscard]] std::span<const Vote> votes() const { return votes_; }
 
  private:
-  struct Vote {
-    double speed_mps = 0.0;
-    double sigma_mps = 0.0;
-    int cell = 0;
-    int side = 0;  // -1 right, 0 ahead or behind, 1 left.
-  };
-  std::vector<Vote> votes_;  // By speed.
-  int cells_ = 0;
+  std::vector<Vote> votes_;
 };
 
 }  // namespace v2vouch

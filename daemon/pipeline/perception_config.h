@@ -4,7 +4,7 @@
 #include "daemon/alignment/alignment.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/vehicle.h"
-#include "daemon/odometry/ego_reading.h"
+#include "daemon/odometry/ego_reading_config.h"
 #include "daemon/pipeline/priority_config.h"
 #include "daemon/pipeline/timeline_config.h"
 #include "daemon/preprocessing/radar/radar_preprocessing.h"

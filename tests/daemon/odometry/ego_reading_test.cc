@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <random>
 
 #include "tests/daemon/odometry/standing_scene.h"
@@ -31,6 +32,7 @@ struct Truth {
   double told_mps = 0.0;
   Gear gear = Gear::kForward;
   double yaw_rate_radps = 0.0;
+  std::optional<double> told_yaw_rate_radps{};
 };
 
 /// Plays a drive: 50 samples and 20 scans of each of three radars a second.
@@ -54,7 +56,7 @@ class Drive {
         sample.stamp = stamp;
         sample.speed_mps = now.told_mps;
         sample.gear = now.gear;
-        sample.yaw_rate_radps = now.yaw_rate_radps;
+        sample.yaw_rate_radps = now.told_yaw_rate_radps.value_or(now.yaw_rate_radps);
         last_ = reading.Read(sample);
         if (t >= settle_s) {
           ++all;
@@ -286,6 +288,28 @@ TEST(EgoReading, AStandingCarDoesNotTurnAndACreepingOneDoes) {
       },
       [](double) { return Street(); });
   EXPECT_NEAR(creeps.last().yaw_rate_radps, FromDegrees(2.0), FromDegrees(0.6));
+}
+
+TEST(EgoReading, AFrozenYawRateIsFlaggedAndARightOneIsNot) {
+  for (const double turn : {-0.3, -0.12, 0.12, 0.3}) {
+    Drive frozen;
+    frozen.Play(
+        5.0, 0.0,
+        [&](double) {
+          return Truth{8.0, 8.0, Gear::kForward, turn, 0.0};
+        },
+        [](double) { return Street() + Lane(3.5, -8.0); });
+    EXPECT_TRUE(frozen.reading.yaw().is_suspect()) << turn;
+    EXPECT_NEAR(frozen.reading.yaw().missing_radps(), turn, 0.04);
+    Drive right;
+    right.Play(
+        5.0, 0.0,
+        [&](double) {
+          return Truth{8.0, 8.03, Gear::kForward, turn};
+        },
+        [](double) { return Street() + Lane(3.5, -8.0) + Lane(-3.5, 9.0); });
+    EXPECT_FALSE(right.reading.yaw().is_suspect()) << turn;
+  }
 }
 
 TEST(EgoReading, ACopyGoesOnToTheSameBits) {
