@@ -251,11 +251,14 @@ void SpeedCheck::DecideRolling(Timestamp stamp, double held_s) {
                             (gear_ == Gear::kReverse || gear_ == Gear::kForward);
     const bool is_known = is_opposed || sign_ < 0.0;
     const bool is_open = gear_ != Gear::kForward && gear_ != Gear::kPark;
-    const bool is_settled =
-        is_known ? other_sum_.cells > 0.5 * kWorldCells &&
-                       other_sum_.cells > 1.5 * used_sum_.cells && held_s >= 0.15
-                 : is_open && std::abs(used) <= kReverse_mps && IsWorld(other_sum_) &&
-                       other_sum_.cells > 3.0 * used_sum_.cells && held_s >= 0.4;
+    // A street built on one side only: nothing else shows exactly the opposite speed for long.
+    const bool is_one_sided = other_sum_.cells >= 2.0 * kWorldCells &&
+                              other_sum_.cells > 5.0 * used_sum_.cells && held_s >= 1.0;
+    const bool is_seen = is_one_sided || (IsWorld(other_sum_) && held_s >= 0.4 &&
+                                          other_sum_.cells > 3.0 * used_sum_.cells);
+    const bool is_settled = is_known ? other_sum_.cells > 0.5 * kWorldCells && held_s >= 0.15 &&
+                                           other_sum_.cells > 1.5 * used_sum_.cells
+                                     : is_open && std::abs(used) <= kReverse_mps && is_seen;
     if (is_settled) {
       sign_ = -sign_;
       sign_is_seen_ = true;
@@ -284,7 +287,9 @@ void SpeedCheck::DecideRolling(Timestamp stamp, double held_s) {
     Replace(stamp, true);
     return;
   }
-  if (held_s >= 2.0) is_suspect_ = true;
+  // Traffic that drives along shows a speed near 0, and needs no explanation.
+  const bool is_traffic = std::abs(other_) < 0.3 * std::abs(used);
+  if (held_s >= 2.0 && !is_traffic) is_suspect_ = true;
 }
 
 // Tyres and wheel sensors are off by some per cent; learnt slowly, over changing surroundings.

@@ -172,6 +172,20 @@ TEST(EgoReading, TrafficAtOneSpeedAroundARollingEgoDoesNotOutvoteItsWheels) {
   }
 }
 
+TEST(EgoReading, TrafficThatDrivesAlongWhereNothingStandsIsNoReasonForSuspicion) {
+  Drive drive;
+  const auto truth = [](double t) {
+    const double v = 25.0 + 5.0 * std::sin(0.3 * t);
+    return Truth{v, v, Gear::kUnknown};
+  };
+  const auto scene = [&](double t) {
+    const double v = truth(t).speed_mps;
+    return Lane(3.5, v + 1.0) + Lane(-3.5, v - 2.0) + Ahead(v);
+  };
+  EXPECT_EQ(drive.Play(30.0, 0.0, truth, scene), 1.0);
+  EXPECT_FALSE(drive.reading.speed().is_suspect());
+}
+
 TEST(EgoReading, PositiveSpeedInReverseGearIsBackwards) {
   Drive drive;
   EXPECT_EQ(drive.Play(
@@ -222,6 +236,17 @@ TEST(EgoReading, AnUnsignedSpeedWithoutGearIsSettledByDoppler) {
     EXPECT_GT(drive.Play(12.0, 0.8, truth, [](double) { return Street(); }), 0.97) << speed;
     EXPECT_EQ(drive.reading.speed().correction(), SpeedCorrection::kNone);
   }
+}
+
+TEST(EgoReading, AStreetBuiltOnOneSideIsEnoughForTheSign) {
+  Drive drive;
+  EXPECT_GT(drive.Play(
+                6.0, 1.5,
+                [](double) {
+                  return Truth{-3.5, 3.5, Gear::kUnknown};
+                },
+                [](double) { return Posts(-6.5, 10.0); }),
+            0.99);
 }
 
 TEST(EgoReading, AWrongUnitIsFoundWhileTheSpeedChanges) {
