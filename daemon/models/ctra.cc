@@ -11,6 +11,17 @@ namespace v2vouch {
 namespace {
 
 constexpr double kMaxStep_s = 0.1;
+// Sub-steps end here: what follows is no motion any more but a guess of one, see Forget.
+constexpr double kMostSteps = 100;
+constexpr double kLongest_s = kMostSteps * kMaxStep_s;
+// Nothing more is forgotten after eleven days.
+constexpr double kForgotten_s = 1e6;
+constexpr double kForgetting_s = 10.0;
+// What is known of any vehicle, 1 sigma. Its direction: anywhere on the circle, evenly.
+constexpr double kAnySpeed_mps = 20.0;
+constexpr double kAnyYaw_rad = kPi / 1.7320508075688772;
+constexpr double kAnyYawRate_radps = 0.2;
+constexpr double kAnyAccel_mps2 = 1.5;
 // Half of the yaw dynamics is left at this speed; at 1 m/s four fifths are.
 constexpr double kStandstill_mps = 0.5;
 // A vehicle that stands stops turning with this time constant.
@@ -67,6 +78,28 @@ void AddNoise(const StateVector& x, double dt, const MotionNoise& noise, StateMa
   P(kYaw, kYawRate) += qw * dt2 / 2.0;
   P(kYawRate, kYaw) += qw * dt2 / 2.0;
   P(kYawRate, kYawRate) += qw * dt;
+}
+
+// Past the sub-steps a vehicle may have gone anywhere that roads and speeds allow: all but the
+// position returns to what is known of any vehicle (Ornstein-Uhlenbeck, one closed step), and the
+// position grows uncertain at the speed of traffic.
+void Forget(KinematicState& state, double rest_s, StateMatrix* transition) {
+  const double t = std::min(rest_s, kForgotten_s);
+  const double kept = std::exp(-t / kForgetting_s);
+  StateVector phi = StateVector::Constant(kept);
+  phi.head<2>().setOnes();
+  // The direction has no mean to return to.
+  phi[kYaw] = 1.0;
+  StateVector any;
+  any << kAnySpeed_mps * t, kAnySpeed_mps * t, kAnyYaw_rad, kAnySpeed_mps, kAnyYawRate_radps,
+      kAnyAccel_mps2;
+  StateVector grown = any.cwiseAbs2();
+  grown.tail<4>() *= 1.0 - kept * kept;
+  state.mean.head<2>() += state.velocity() * kForgetting_s * (1.0 - kept);
+  state.mean = state.mean.cwiseProduct(phi).eval();
+  state.covariance = (phi.asDiagonal() * state.covariance * phi.asDiagonal()).eval();
+  state.covariance.diagonal() += grown;
+  if (transition != nullptr) *transition = phi.asDiagonal() * *transition;
 }
 
 }  // namespace
@@ -142,9 +175,10 @@ void PredictCtra(KinematicState& state, double dt_s, const MotionNoise& noise,
   V2VOUCH_CHECK(dt_s >= 0.0);
   if (transition != nullptr) transition->setIdentity();
   if (dt_s == 0.0) return;
+  const double near_s = std::min(dt_s, kLongest_s);
   // A little above the limit does not buy a second step: 100 ms stamps jitter by a microsecond.
-  const int steps = static_cast<int>(std::ceil(dt_s / kMaxStep_s - 1e-3));
-  const double dt = dt_s / std::max(steps, 1);
+  const int steps = static_cast<int>(std::ceil(near_s / kMaxStep_s - 1e-3));
+  const double dt = near_s / std::max(steps, 1);
   StateMatrix F;
   for (int i = 0; i < std::max(steps, 1); ++i) {
     const StateVector next = CtraStep(state.mean, dt, noise, &F);
@@ -155,6 +189,7 @@ void PredictCtra(KinematicState& state, double dt_s, const MotionNoise& noise,
     state.mean = next;
     if (transition != nullptr) *transition = F * *transition;
   }
+  if (dt_s > near_s) Forget(state, dt_s - near_s, transition);
   state.mean[kYaw] = WrapAngle(state.mean[kYaw]);
 }
 

@@ -11,6 +11,7 @@ namespace v2vouch {
 namespace {
 
 constexpr double kMaxStep_s = 0.1;  // CtraStep's own limit.
+constexpr int kMostSteps = 100;     // What is longer, PredictCtra makes short.
 constexpr double kDoubtSpeed_mps = 1.5;
 constexpr double kDoubtYaw_rad = FromDegrees(10.0);
 constexpr double kLowSpeed_mps = 1.0;
@@ -108,9 +109,14 @@ void PriorityFilter::PredictTo(Timestamp stamp, const PriorityFilterConfig& conf
   // cross terms is the one the covariance was moved with.
   KinematicState vehicle = kinematics();
   StateMatrix F = StateMatrix::Identity();
-  while (left_s > 1e-9) {
-    const double dt_s = std::min(left_s, kMaxStep_s);
+  for (int steps = 0; left_s > 1e-9; ++steps) {
     StateMatrix step;
+    if (steps == kMostSteps) {
+      PredictCtra(vehicle, left_s, config.motion, &step);
+      F = (step * F).eval();
+      break;
+    }
+    const double dt_s = std::min(left_s, kMaxStep_s);
     CtraStep(vehicle.mean, dt_s, config.motion, &step);
     PredictCtra(vehicle, dt_s, config.motion);
     F = (step * F).eval();
