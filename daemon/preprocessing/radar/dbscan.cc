@@ -2,6 +2,7 @@
 #include "daemon/preprocessing/radar/dbscan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace v2vouch {
@@ -9,6 +10,8 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr std::size_t kNoise = std::numeric_limits<std::size_t>::max();
+// From here on a grid is worth its building.
+constexpr std::size_t kSmallScan = 96;
 
 double Radius(const Reflection& a, const Reflection& b, const Neighbourhood& n) {
   return n.scale * (n.eps_m + n.eps_per_m * 0.5 * (a.range_m + b.range_m));
@@ -31,23 +34,67 @@ std::size_t Dbscan::Root(std::size_t i) {
   return i;
 }
 
+// Cells as wide as the largest radius: neighbours lie in the same cell or in the next ones.
+void Dbscan::FillGrid(std::span<const Reflection> reflections, const Neighbourhood& neighbourhood,
+                      std::span<const int> members) {
+  cells_.clear();
+  if (members.size() < kSmallScan) return;
+  const Reflection& farthest = reflections[static_cast<std::size_t>(members.back())];
+  const double cell_m = Radius(farthest, farthest, neighbourhood);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Reflection& r = reflections[static_cast<std::size_t>(members[i])];
+    cells_.push_back({static_cast<std::int32_t>(std::floor(r.x_m / cell_m)),
+                      static_cast<std::int32_t>(std::floor(r.y_m / cell_m)),
+                      static_cast<std::uint32_t>(i)});
+  }
+  std::sort(cells_.begin(), cells_.end());
+}
+
+// Calls visit(i, j, distance2), i < j, for every pair of neighbours, in any order.
+template <class Visit>
+void Dbscan::ForEachPair(std::span<const Reflection> reflections,
+                         const Neighbourhood& neighbourhood, std::span<const int> members,
+                         Visit&& visit) const {
+  const auto at = [&](std::size_t i) -> const Reflection& {
+    return reflections[static_cast<std::size_t>(members[i])];
+  };
+  const auto look_at = [&](std::size_t i, std::size_t j) {
+    const double distance2 = Distance2(at(i), at(j), neighbourhood);
+    if (distance2 <= 1.0) visit(i, j, distance2);
+  };
+  if (cells_.empty()) {
+    // Two points differ in range by no more than their distance, and members are in order of range:
+    // the inner loop ends early.
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      for (std::size_t j = i + 1; j < members.size(); ++j) {
+        if (at(j).range_m - at(i).range_m > Radius(at(i), at(j), neighbourhood)) break;
+        look_at(i, j);
+      }
+    }
+    return;
+  }
+  // Each pair once: within a cell, and with the four of the eight next cells that come after it.
+  for (std::size_t a = 0; a < cells_.size(); ++a) {
+    const Cell& cell = cells_[a];
+    const auto meet = [&](auto from, std::int32_t column, std::int32_t last_row) {
+      for (; from != cells_.end() && from->column == column && from->row <= last_row; ++from) {
+        look_at(std::min(cell.member, from->member), std::max(cell.member, from->member));
+      }
+    };
+    meet(cells_.begin() + static_cast<std::ptrdiff_t>(a) + 1, cell.column, cell.row + 1);
+    meet(std::lower_bound(cells_.begin() + static_cast<std::ptrdiff_t>(a), cells_.end(),
+                          Cell{cell.column + 1, cell.row - 1, 0}),
+         cell.column + 1, cell.row + 1);
+  }
+}
+
 std::span<const std::size_t> Dbscan::Run(std::span<const Reflection> reflections,
                                          const Neighbourhood& neighbourhood,
                                          std::span<int> members) {
   const std::size_t count = members.size();
-  const auto at = [&](std::size_t i) -> const Reflection& {
-    return reflections[static_cast<std::size_t>(members[i])];
-  };
-  // Calls visit(i, j, distance2) for every pair of neighbours. Two points differ in range by no
-  // more than their distance, and members are in order of range: the inner loop ends early.
+  FillGrid(reflections, neighbourhood, members);
   const auto for_each_pair = [&](auto&& visit) {
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t j = i + 1; j < count; ++j) {
-        if (at(j).range_m - at(i).range_m > Radius(at(i), at(j), neighbourhood)) break;
-        const double distance2 = Distance2(at(i), at(j), neighbourhood);
-        if (distance2 <= 1.0) visit(i, j, distance2);
-      }
-    }
+    ForEachPair(reflections, neighbourhood, members, visit);
   };
 
   neighbours_.assign(count, 1);
@@ -68,15 +115,18 @@ std::span<const std::size_t> Dbscan::Run(std::span<const Reflection> reflections
     const std::size_t b = Root(j);
     parent_[std::max(a, b)] = std::min(a, b);
   });
-  // Border points join their nearest core; pairs come in order, so the lowest index wins a tie.
+  // Border points join their nearest core; the lowest index wins a tie.
   nearest_.assign(count, kFar);
+  nearest_core_.assign(count, kNoise);
   if (neighbourhood.min_points > 1) {
     for_each_pair([&](std::size_t i, std::size_t j, double distance2) {
       if (is_core(i) == is_core(j)) return;
       const std::size_t border = is_core(i) ? j : i;
-      if (distance2 < nearest_[border]) {
+      const std::size_t core = is_core(i) ? i : j;
+      if (std::pair(distance2, core) < std::pair(nearest_[border], nearest_core_[border])) {
         nearest_[border] = distance2;
-        parent_[border] = is_core(i) ? i : j;
+        nearest_core_[border] = core;
+        parent_[border] = core;
       }
     });
   }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <compare>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -33,7 +35,8 @@ struct Neighbourhood {
 
 /// Density-based clustering (Ester, Kriegel, Sander, Xu 1996). Unlike the original the answer does
 /// not depend on the order of visits: a border point joins the cluster of its nearest core point.
-/// Quadratic at worst; a window over range keeps it near linear on spread-out scans.
+/// A window over range keeps small scans near linear; large ones are searched by a square grid, so
+/// that a wall at one range costs no more than a field of posts.
 class Dbscan {
  public:
   /// Clusters the reflections named by `members` (ascending indices; `reflections` ordered by
@@ -44,12 +47,25 @@ class Dbscan {
                                    const Neighbourhood& neighbourhood, std::span<int> members);
 
  private:
+  struct Cell {
+    std::int32_t column = 0;
+    std::int32_t row = 0;
+    std::uint32_t member = 0;
+    friend auto operator<=>(const Cell&, const Cell&) = default;
+  };
   std::size_t Root(std::size_t i);
+  template <class Visit>
+  void ForEachPair(std::span<const Reflection> reflections, const Neighbourhood& neighbourhood,
+                   std::span<const int> members, Visit&& visit) const;
+  void FillGrid(std::span<const Reflection> reflections, const Neighbourhood& neighbourhood,
+                std::span<const int> members);
 
   std::vector<std::size_t> parent_, ends_;
   std::vector<int> neighbours_;
   std::vector<std::pair<std::size_t, int>> order_;  // Cluster's root, member.
   std::vector<double> nearest_;
+  std::vector<std::size_t> nearest_core_;
+  std::vector<Cell> cells_;  // In order; empty for a small scan.
 };
 
 }  // namespace v2vouch

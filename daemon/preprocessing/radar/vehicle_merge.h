@@ -30,7 +30,8 @@ struct VehicleShape {
 /// the last term standing for "speed across the ray is unknown, but a vehicle's". Two clusters join
 /// when one V explains both (chi-square) and the reflections fit a box of length x width along V,
 /// 2 sigma of position noise allowed. Nearest pairs are tried first. A vehicle that turns sharply
-/// breaks the formula and at worst stays in pieces.
+/// breaks the formula and at worst stays in pieces; so does what lies beyond the first few thousand
+/// pairs, in order of range, of a scan full of interference.
 class VehicleMerge {
  public:
   /// @param members indices into `reflections`, cluster after cluster, rearranged in place.
