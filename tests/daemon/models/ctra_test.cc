@@ -116,5 +116,39 @@ TEST(PredictCtra, ReversingVehicleMovesAgainstItsDirection) {
   EXPECT_NEAR(state.mean[kYaw], 0.5 * kPi, 1e-12);
 }
 
+// A clock that steps must not make one prediction take hours, nor end in numbers that are none.
+TEST(PredictCtra, AnyLengthOfTimeIsPredictedAtOnce) {
+  Random random(17);
+  for (const double dt_s : {10.5, 60.0, 3600.0, 86400.0, 3.2e9}) {
+    for (int trial = 0; trial < 20; ++trial) {
+      KinematicState state{RandomState(random), 0.1 * StateMatrix::Identity()};
+      const Eigen::Vector2d from = state.mean.head<2>();
+      StateMatrix transition;
+      PredictCtra(state, dt_s, kNoise, &transition);
+      ASSERT_TRUE(state.mean.allFinite() && state.covariance.allFinite()) << dt_s;
+      ASSERT_TRUE(transition.allFinite()) << dt_s;
+      const Eigen::SelfAdjointEigenSolver<StateMatrix> solver(state.covariance);
+      EXPECT_GT(solver.eigenvalues().minCoeff(), 0.0) << dt_s;
+      // Where traffic can have got to by then lies within two or three sigma.
+      const double sigma_m = std::sqrt(state.covariance(kX, kX));
+      EXPECT_GT(sigma_m, 10.0 * std::min(dt_s - 10.0, 1e6)) << dt_s;
+      EXPECT_LT((state.mean.head<2>() - from).norm(), 3.0 * sigma_m + 600.0) << dt_s;
+    }
+  }
+}
+
+TEST(PredictCtra, WhereTheSubStepsEndNothingJumps) {
+  Random random(18);
+  for (int trial = 0; trial < 50; ++trial) {
+    const KinematicState start{RandomState(random), 0.1 * StateMatrix::Identity()};
+    KinematicState before = start, after = start;
+    PredictCtra(before, 9.9999, kNoise);
+    PredictCtra(after, 10.0001, kNoise);
+    EXPECT_LT((before.mean.head<2>() - after.mean.head<2>()).norm(), 0.05);
+    const double ratio = after.covariance.trace() / before.covariance.trace();
+    EXPECT_NEAR(ratio, 1.0, 0.01);
+  }
+}
+
 }  // namespace
 }  // namespace v2vouch

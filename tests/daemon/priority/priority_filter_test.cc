@@ -126,5 +126,15 @@ TEST(PriorityFilter, BiasNeverExceedsItsCap) {
   }
 }
 
+TEST(PriorityFilter, ADayWithoutAnyWordIsPredictedAtOnce) {
+  const PriorityFilterConfig config;
+  PriorityFilter filter = Standing(config);
+  filter.PredictTo(At(0) + FromSeconds(86400.0), config);
+  const KinematicState state = filter.kinematics();
+  EXPECT_TRUE(state.mean.allFinite());
+  EXPECT_TRUE(state.covariance.allFinite());
+  EXPECT_GT(std::sqrt(state.covariance(kX, kX)), 1e5);
+}
+
 }  // namespace
 }  // namespace v2vouch
