@@ -15,8 +15,15 @@ namespace {
 constexpr double kCrossSpeedSigma_mps = 10.0;
 constexpr double kCameraSpeedSigma_mps = 8.0;
 constexpr double kPairedSpeedSigma_mps = 2.0;
-// White acceleration of a point [m^2/s^3]: 2 m/s^2 that last for about a second.
+// White acceleration of a point [m^2/s^3]: 2 m/s^2 that last for about a second, and what is left
+// of it in something that stands, walks or creeps. Half way between at a root mean square of the
+// velocity of so much: with the noise of traffic, 3 m/s across the line of sight never stand out.
 constexpr double kPointAccelPsd = 4.0;
+constexpr double kSlowAccelPsd = 0.4;
+constexpr double kSlow_mps = 6.0;
+// Nothing is predicted farther; beyond it, the position grows uncertain at the speed of traffic.
+constexpr double kLongest_s = 10.0;
+constexpr double kAnySpeed_mps = 20.0;
 // One reflection lies anywhere on a vehicle whose direction is unknown: this far from the mean of
 // all, radially and across (a car's side scatters by 1.3 m, its tail by 0.5 m). Part of it stays
 // however many reflections there are.
@@ -26,9 +33,8 @@ constexpr double kPointRadialSigma_m = 0.15;
 constexpr double kPointAcrossSigma_m = 0.2;
 // A velocity that points somewhere.
 constexpr double kDirectedSpeed_mps = 1.0;
-constexpr double kDirectedSpeedShare = 0.2;
 // One that is none: this sure, in the direction it is known worst.
-constexpr double kStandingSigma_mps = 1.5;
+constexpr double kStandingSigma_mps = 0.7;
 // Of the unseen part of a point target: see LinearizeRadar.
 constexpr double kUnseenLooks = 8.0;
 
@@ -159,31 +165,42 @@ PointFilter PointFilter::FromRadar(const RadarLook& look, const RadarMeasurement
   return filter;
 }
 
-PointFilter PointFilter::AtRest(const Fix& fix, double speed_sigma_mps) {
+PointFilter PointFilter::AtRest(const Fix& fix, const Eigen::Matrix2d& velocity_covariance) {
   PointFilter filter;
   filter.mean_ << fix.p_O, 0.0, 0.0;
   filter.covariance_.setZero();
   filter.covariance_.topLeftCorner<2, 2>() = fix.covariance;
-  filter.covariance_.bottomRightCorner<2, 2>() =
-      speed_sigma_mps * speed_sigma_mps * Eigen::Matrix2d::Identity();
+  filter.covariance_.bottomRightCorner<2, 2>() = velocity_covariance;
   return filter;
 }
 
-PointFilter PointFilter::FromCamera(const Fix& fix) { return AtRest(fix, kCameraSpeedSigma_mps); }
+PointFilter PointFilter::FromCamera(const Fix& fix) {
+  return AtRest(fix, kCameraSpeedSigma_mps * kCameraSpeedSigma_mps * Eigen::Matrix2d::Identity());
+}
 
-PointFilter PointFilter::FromStanding(const Fix& fix) { return AtRest(fix, kPairedSpeedSigma_mps); }
+PointFilter PointFilter::FromStanding(const Fix& fix, const Eigen::Vector2d& seen_from_O) {
+  const Eigen::Vector2d line = (fix.p_O - seen_from_O).normalized();
+  const Eigen::Vector2d across(-line.y(), line.x());
+  return AtRest(fix,
+                kPairedSpeedSigma_mps * kPairedSpeedSigma_mps * line * line.transpose() +
+                    kCameraSpeedSigma_mps * kCameraSpeedSigma_mps * across * across.transpose());
+}
 
-void PointFilter::Predict(double dt_s) {
+void PointFilter::Predict(double predicted_s) {
+  const double dt_s = std::min(predicted_s, kLongest_s);
+  const double speed2 = mean_.tail<2>().squaredNorm() + covariance_(2, 2) + covariance_(3, 3);
+  const double share = speed2 / (speed2 + kSlow_mps * kSlow_mps);
+  const double q = kSlowAccelPsd + (kPointAccelPsd - kSlowAccelPsd) * share;
   Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
   F(0, 2) = F(1, 3) = dt_s;
   mean_ = (F * mean_).eval();
   Eigen::Matrix4d P = F * covariance_ * F.transpose();
-  const double q = kPointAccelPsd;
   for (int i = 0; i < 2; ++i) {
     P(i, i) += q * dt_s * dt_s * dt_s / 3.0;
     P(i, i + 2) += q * dt_s * dt_s / 2.0;
     P(i + 2, i) += q * dt_s * dt_s / 2.0;
     P(i + 2, i + 2) += q * dt_s;
+    if (predicted_s > dt_s) P(i, i) += std::pow(kAnySpeed_mps * (predicted_s - dt_s), 2);
   }
   covariance_ = 0.5 * (P + P.transpose());
 }
@@ -208,7 +225,7 @@ bool PointFilter::Update(const CameraLook& look, const CameraMeasurement& z, boo
   return model && JosephUpdate<4>(model->y, model->H, model->R, mean_, covariance_);
 }
 
-bool PointFilter::HasDirection(double max_sigma_rad) const {
+bool PointFilter::HasDirection(double max_sigma_rad, double most_share) const {
   const Eigen::Vector2d v = mean_.tail<2>();
   const double speed = v.norm();
   if (speed < kDirectedSpeed_mps) return false;
@@ -217,7 +234,7 @@ bool PointFilter::HasDirection(double max_sigma_rad) const {
   const Eigen::Matrix2d P = covariance_.bottomRightCorner<2, 2>();
   const double across_sigma = std::sqrt(across.dot(P * across));
   const double along_sigma = std::sqrt(along.dot(P * along));
-  return across_sigma < max_sigma_rad * speed && along_sigma < kDirectedSpeedShare * speed;
+  return across_sigma < max_sigma_rad * speed && along_sigma < most_share * speed;
 }
 
 bool PointFilter::IsStanding() const {

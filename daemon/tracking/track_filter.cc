@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/tracking/track_filter.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "daemon/base/angle.h"
 #include "daemon/models/extent.h"
+#include "daemon/tracking/candidates.h"
 
 namespace v2vouch {
 namespace {
@@ -12,6 +14,18 @@ namespace {
 // Heading sigma for becoming a vehicle, and for being shown as one.
 constexpr double kDirectedSigma_rad = 0.15;
 constexpr double kShownSigma_rad = 0.6;
+// Sigma of the speed over the speed: five standard deviations from standing for good, three until
+// the next list.
+constexpr double kDirectedShare = 0.2;
+constexpr double kShownShare = 0.35;
+// What is hardly longer than wide loses nothing by a wrong direction.
+constexpr double kShownSmallShare = 0.5;
+constexpr double kSmall_m = 2.5;
+// A vehicle whose axis is a guess starts again from its point where that moves by so much in
+// another way, plus what the reflections slide along a body for each radian that the line of sight
+// turns, in lengths of the vehicle.
+constexpr double kOtherMotion_mps = 1.0;
+constexpr double kSlidePerTurn = 1.5;
 // A direction that was only assumed.
 constexpr double kAssumedYawSigma_rad = 0.7;
 // Young tracks are linearised twice: range rate bends strongly over an uncertain heading.
@@ -48,16 +62,13 @@ TrackFilter TrackFilter::FromCamera(const CameraLook& look, const CameraMeasurem
 }
 
 void TrackFilter::TakeStanding(const Fix& fix) {
-  if (!is_vehicle_) point_ = PointFilter::FromStanding(fix);
+  if (!is_vehicle_) point_ = PointFilter::FromStanding(fix, seen_from_);
 }
 
 void TrackFilter::Predict(double dt_s, const FilterSettings& settings) {
   age_s_ += dt_s;
-  if (is_vehicle_) {
-    vehicle_.Predict(dt_s, settings);
-  } else {
-    point_.Predict(dt_s);
-  }
+  if (is_vehicle_) vehicle_.Predict(dt_s, settings);
+  if (!has_driven()) point_.Predict(dt_s);
 }
 
 template <class Look, class Measurement>
@@ -70,17 +81,39 @@ std::optional<Likelihood> TrackFilter::Evaluate(const Look& look, const Measurem
 template <class Look, class Measurement>
 bool TrackFilter::Update(const Look& look, const Measurement& z, const FilterSettings& settings) {
   seen_from_ = look.origin_O();
-  if (is_vehicle_) return vehicle_.Update(look, z, object_class_, age_s_ < kYoung_s, settings);
-  if (!point_.Update(look, z, settings.point_targets)) return false;
-  PromoteIfClear(settings);
+  if (!is_vehicle_) {
+    if (!point_.Update(look, z, settings.point_targets)) return false;
+    PromoteIfClear(settings);
+    return true;
+  }
+  if (!vehicle_.Update(look, z, object_class_, age_s_ < kYoung_s, settings)) return false;
+  if (!has_driven()) FollowPoint(look, z, settings);
   return true;
+}
+
+// A vehicle that was never seen moving has the axis that its silhouettes make likeliest. What moves
+// across the line of sight shows no Doppler, and moves across that axis as often as along it.
+template <class Look, class Measurement>
+void TrackFilter::FollowPoint(const Look& look, const Measurement& z,
+                              const FilterSettings& settings) {
+  if (!point_.Update(look, z, settings.point_targets)) return;
+  if (!point_.HasDirection(kDirectedSigma_rad, kDirectedShare)) return;
+  const Eigen::Vector2d sight = point_.position() - seen_from_;
+  const double ego_yaw_rad = look.ego.X_OB.yaw_rad();
+  const double turn_radps = std::abs(look.ego.speed_mps * (std::cos(ego_yaw_rad) * sight.y() -
+                                                           std::sin(ego_yaw_rad) * sight.x())) /
+                            std::max(sight.squaredNorm(), 1.0);
+  const Extent size = vehicle_.best().extent();
+  const double other_mps = kOtherMotion_mps + kSlidePerTurn * size.length_m * turn_radps;
+  if ((point_.velocity() - velocity_O()).norm() < other_mps) return;
+  vehicle_.StartMoving(point_, size, seen_from_, settings);
 }
 
 void TrackFilter::PromoteIfClear(const FilterSettings& settings) {
   // A lorry's point lies somewhere along it: AssumeClass knows how little that says.
   const ObjectClass first = IsLong(object_class_) ? ObjectClass::kUnknown : object_class_;
   const Extent size = ClassExtent(first);
-  if (point_.HasDirection(kDirectedSigma_rad)) {
+  if (point_.HasDirection(kDirectedSigma_rad, kDirectedShare)) {
     vehicle_.StartMoving(point_, size, seen_from_, settings);
     is_vehicle_ = true;
   } else if (point_.IsStanding()) {
@@ -102,12 +135,25 @@ void TrackFilter::SetClass(ObjectClass object_class) {
   object_class_ = object_class;
 }
 
+ExtendedState TrackFilter::ShowPoint(const FilterSettings& settings) const {
+  const Extent size = ClassExtent(object_class_);
+  const double share = size.length_m < kSmall_m ? kShownSmallShare : kShownShare;
+  if (point_.HasDirection(kShownSigma_rad, share)) {
+    return VehicleAt(point_, 0.0, 0.0, size, seen_from_, settings);
+  }
+  ExtendedState state =
+      VehicleAt(point_, default_yaw_rad_, kAssumedYawSigma_rad, size, seen_from_, settings);
+  // Along the assumed direction the speed may be known well, and it says nothing of the rest.
+  const Eigen::Vector2d forward(std::cos(default_yaw_rad_), std::sin(default_yaw_rad_));
+  const Eigen::Vector2d across = point_.velocity() - point_.velocity().dot(forward) * forward;
+  const double sigma_mps = LargestSigma(point_.covariance().bottomRightCorner<2, 2>());
+  double& variance = state.covariance(kSpeed, kSpeed);
+  variance = std::max(variance, sigma_mps * sigma_mps + across.squaredNorm());
+  return state;
+}
+
 void TrackFilter::Show(const FilterSettings& settings, LocalTrack& track) const {
-  const double yaw_sigma = point_.HasDirection(kShownSigma_rad) ? 0.0 : kAssumedYawSigma_rad;
-  const ExtendedState state = is_vehicle_
-                                  ? vehicle_.Show()
-                                  : VehicleAt(point_, default_yaw_rad_, yaw_sigma,
-                                              ClassExtent(object_class_), seen_from_, settings);
+  const ExtendedState state = is_vehicle_ ? vehicle_.Show() : ShowPoint(settings);
   track.state_O = state.kinematic();
   if (!settings.point_targets) {
     // Where on its body a vehicle reflects is much the same from scan to scan: that error of the

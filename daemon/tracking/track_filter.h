@@ -17,8 +17,9 @@ namespace v2vouch {
 ///    about the direction. A crossing vehicle would have its heading wrong by 90 degrees in any
 ///    model that needs one.
 /// 2. *vehicle* (VehicleFilter): CTRA with size, from the moment the velocity points somewhere
-///    (heading sigma below 0.15 rad) or is known to be none on. There is no way back: a vehicle
-///    that stops keeps its yaw.
+///    (heading sigma below 0.15 rad) or is known to be none on. A vehicle that stops keeps its yaw.
+///    One that was never seen moving keeps its point beside it: where that moves as the vehicle,
+///    whose axis is a guess, cannot, the vehicle starts again from the point.
 class TrackFilter {
  public:
   static TrackFilter FromRadar(const RadarLook& look, const RadarMeasurement& measurement,
@@ -57,10 +58,13 @@ class TrackFilter {
   void Lengthen(double length_m, double sigma_m);
 
   /// State and size as the rest of the program sees them. A point's centre lies behind it by what
-  /// its likely direction says; without one, it is taken to stand as the ego does.
+  /// its likely direction says; without one, it is taken to stand as the ego does, and the speed is
+  /// as uncertain as the velocity is in any direction.
   void Show(const FilterSettings& settings, LocalTrack& track) const;
 
   [[nodiscard]] bool is_vehicle() const { return is_vehicle_; }
+  /// Its front and axis are those of its motion.
+  [[nodiscard]] bool has_driven() const { return is_vehicle_ && vehicle_.has_driven(); }
   [[nodiscard]] bool knows_direction() const;  ///< Front and axis; whole poses need both.
   [[nodiscard]] Eigen::Vector2d seen_from_O() const { return seen_from_; }
   [[nodiscard]] Eigen::Vector2d position_O() const;
@@ -69,10 +73,13 @@ class TrackFilter {
 
  private:
   void PromoteIfClear(const FilterSettings& settings);
+  template <class Look, class Measurement>
+  void FollowPoint(const Look& look, const Measurement& z, const FilterSettings& settings);
+  [[nodiscard]] ExtendedState ShowPoint(const FilterSettings& settings) const;
 
   bool is_vehicle_ = false;
   double age_s_ = 0.0;
-  PointFilter point_;
+  PointFilter point_;  // Of a vehicle too, until it is seen driving.
   VehicleFilter vehicle_;
   Eigen::Vector2d seen_from_ = Eigen::Vector2d::Zero();  // Last sensor that saw it, in O.
   double default_yaw_rad_ = 0.0;

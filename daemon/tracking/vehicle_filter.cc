@@ -342,6 +342,8 @@ void VehicleFilter::Lengthen(double length_m, double sigma_m, const Eigen::Vecto
 ExtendedState VehicleFilter::Show() const {
   ExtendedState out = best();
   if (count_ == 1) return out;
+  const Eigen::Vector2d shown = out.kinematic().velocity();
+  const double known = out.covariance(kSpeed, kSpeed);
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < count_; ++i) {
     mean += components_[i].weight * components_[i].state.mean.head<2>();
@@ -349,6 +351,11 @@ ExtendedState VehicleFilter::Show() const {
   for (std::size_t i = 0; i < count_; ++i) {
     const Eigen::Vector2d off = components_[i].state.mean.head<2>() - mean;
     out.covariance.topLeftCorner<2, 2>() += components_[i].weight * off * off.transpose();
+    // A velocity in another direction than the one shown.
+    const Eigen::Vector2d other = components_[i].state.kinematic().velocity() - shown;
+    const ExtendedState::Matrix& P = components_[i].state.covariance;
+    out.covariance(kSpeed, kSpeed) +=
+        components_[i].weight * (other.squaredNorm() + std::max(P(kSpeed, kSpeed) - known, 0.0));
   }
   out.mean.head<2>() = mean;
   return out;

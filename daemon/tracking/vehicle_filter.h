@@ -64,11 +64,14 @@ class VehicleFilter {
   /// One axis is left, and its front is known.
   [[nodiscard]] bool knows_direction() const { return count_ == 1 && has_driven_; }
 
+  /// Seen in motion: front and rear are told apart.
+  [[nodiscard]] bool has_driven() const { return has_driven_; }
+
   void AssumeClass(ObjectClass from, ObjectClass to, const Eigen::Vector2d& seen_from_O);
   void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O);
 
-  /// The likeliest component; its position is the mixture's mean, its position covariance widened
-  /// by the spread between the components.
+  /// The likeliest component; its position is the mixture's mean, its position covariance and the
+  /// variance of its speed widened by the spread between the components.
   [[nodiscard]] ExtendedState Show() const;
   [[nodiscard]] Eigen::Matrix2d position_covariance() const;  ///< As shown.
   /// The likeliest component.
