@@ -110,13 +110,13 @@ void Tracker::AbsorbClusters(const RadarLook& look,
 
 // Whether a box that no track was given shows (a part of) a tracked vehicle after all: half hidden
 // vehicles have edges where the hiding one ends.
-bool Tracker::Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z) const {
+bool Tracker::Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z,
+                     const Fix& fix) const {
   if (tracks_[track].existence < kOwnerExistence) return false;
   const StateVector& x = tracks_[track].state_O.mean;
   const Eigen::Vector2d line = x.head<2>() - look.origin_O();
   const double range_m = line.norm();
-  const auto fix = FixOf(look, z);
-  if (!fix || range_m < 1.0) return true;
+  if (range_m < 1.0) return true;
   const double bearing =
       WrapAngle(std::atan2(line.y(), line.x()) - look.ego.X_OB.yaw_rad() - look.camera.yaw_rad);
   const double half =
@@ -124,9 +124,9 @@ bool Tracker::Covers(std::size_t track, const CameraLook& look, const CameraMeas
   const double overlap =
       std::min(z.azimuth_left_rad, bearing + half) - std::max(z.azimuth_right_rad, bearing - half);
   if (overlap < 0.5 * (z.azimuth_left_rad - z.azimuth_right_rad)) return false;
-  const double fix_range_m = (fix->p_O - look.origin_O()).norm();
+  const double fix_range_m = (fix.p_O - look.origin_O()).norm();
   const Eigen::Vector2d u = line / range_m;
-  const double range_sigma = std::sqrt(u.dot(fix->covariance * u));
+  const double range_sigma = std::sqrt(u.dot(fix.covariance * u));
   return std::abs(fix_range_m - range_m) <
          3.0 * range_sigma + 0.5 * tracks_[track].extent.length_m + 1.0;
 }

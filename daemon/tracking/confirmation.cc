@@ -35,6 +35,7 @@ bool Tracker::IsConvincing(std::size_t track) const {
                                          : std::min(kMostGuess_m, config_.max_position_sigma_m);
   if (LargestSigma(hidden.filter.position_covariance()) > most_m) return false;
   if (hidden.pose_hits > 0) return true;
+  if (MayBeOwnBody(track) || IsTransparent(track)) return false;
   if (shown.camera_hits > 0) return shown.radar_hits > 0 || !hidden.is_far;
   const bool is_in_sight = hidden.clear_hits >= kClearHits;
   const bool is_missing = hidden.not_pictured >= kMissingPictures;

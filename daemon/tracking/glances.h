@@ -29,9 +29,11 @@ class Glances {
  private:
   struct Glance {
     Eigen::Vector2d from_O = Eigen::Vector2d::Zero();
-    double middle_rad = 0.0;  // Of the bearings, in O.
-    double half_rad = 0.0;    // Half of the box's width, with one sigma of its edges.
-    double height_m = 0.0;    // Of the camera.
+    double middle_rad = 0.0;                            // Of the bearings, in O.
+    Eigen::Vector2d middle = Eigen::Vector2d::UnitX();  // The same as a direction.
+    double beside = 0.0;    // Tangent of the half below, and a little more; 0: not asked.
+    double half_rad = 0.0;  // Half of the box's width, with one sigma of its edges.
+    double height_m = 0.0;  // Of the camera.
     double depression_rad = 0.0;
     double weight = 0.0;  // 1 / variance; 0 where the bottom is cut.
   };

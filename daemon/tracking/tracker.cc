@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "daemon/base/angle.h"
 #include "daemon/tracking/chi_square.h"
@@ -40,6 +42,9 @@ constexpr double kExpectedInPicture = 0.7;
 constexpr double kHoldPerKnown = 3.0;
 constexpr double kLeastHold_s = 0.3;
 constexpr double kCoastingSince_s = 0.5;
+// More tracks than this are not started by one frame.
+constexpr std::size_t kMostNewcomers = 64;
+constexpr std::size_t kMostBoxes = 128;
 bool IsFinite(const RadarMeasurement& z) {
   return std::isfinite(z.range_m) && std::isfinite(z.azimuth_rad) &&
          std::isfinite(z.range_rate_mps) && z.covariance.allFinite() && z.range_m > 0.0;
@@ -277,32 +282,59 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
     if (z.is_object || detection_[i] >= kClearLook) ++hidden.clear_hits;
     hidden.reflection_O = candidates_[static_cast<std::size_t>(assigned_[i])].p_O;
     hidden.reflected = now_;
+    NotePlace(i, look, hidden.reflection_O);
     tracks_[i].last_radar = now_;
     ++tracks_[i].radar_hits;
     hidden.has_range = true;
     if (!z.is_static) ++hidden_[i].moving_hits;
     updates_.push_back({tracks_[i].id, z});
   }
-  const std::size_t known = tracks_.size();
+  StartFromRadar(look, radar, measurements);
+  KeepReturns(look, radar, measurements);
+  Conclude(since_update_s_);
+}
+
+bool Tracker::KeepNearest(std::span<const RadarMeasurement> measurements, std::size_t most,
+                          std::vector<int>& which) {
+  if (which.size() <= most) return false;
+  std::ranges::sort(which, {}, [&](int j) {
+    return std::pair(measurements[static_cast<std::size_t>(j)].range_m, j);
+  });
+  which.resize(most);
+  std::ranges::sort(which);
+  return true;
+}
+
+// What no track explains starts one each.
+void Tracker::StartFromRadar(const RadarLook& look, int radar,
+                             std::span<const RadarMeasurement> measurements) {
+  newcomers_.clear();
   for (std::size_t j = 0; j < measurements.size(); ++j) {
-    if (!candidates_[j].may_start || owner_[j] >= 0) continue;
+    if (candidates_[j].may_start && owner_[j] < 0) newcomers_.push_back(static_cast<int>(j));
+  }
+  // A scan of interference is no crowd of vehicles: the nearest count.
+  if (KeepNearest(measurements, kMostNewcomers, newcomers_)) {
+    failures_.push_back(Reason::kTrackTableFull);
+  }
+  const std::size_t known = tracks_.size();
+  for (const int newcomer : newcomers_) {
+    const auto j = static_cast<std::size_t>(newcomer);
     // The first cluster of a newcomer swallows the others of the same scan.
     bool is_taken = false;
     for (std::size_t i = known; i < tracks_.size() && !is_taken; ++i) {
       is_taken = Owns(i, look, measurements[j], candidates_[j].p_O);
     }
     if (is_taken) continue;
-    Start(TrackFilter::FromRadar(look, measurements[j], settings_), radar, j,
-          candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]));
-    if (tracks_.size() > known && hidden_.back().last_hit == now_) {
-      tracks_.back().last_radar = now_;
-      tracks_.back().radar_hits = 1;
-      hidden_.back().moving_hits = 1;
-      updates_.push_back({tracks_.back().id, measurements[j]});
+    if (!Start(TrackFilter::FromRadar(look, measurements[j], settings_), radar, j,
+               candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]))) {
+      continue;
     }
+    tracks_.back().last_radar = now_;
+    tracks_.back().radar_hits = 1;
+    hidden_.back().moving_hits = 1;
+    NotePlace(tracks_.size() - 1, look, candidates_[j].p_O);
+    updates_.push_back({tracks_.back().id, measurements[j]});
   }
-  KeepReturns(look, radar, measurements);
-  Conclude(since_update_s_);
 }
 
 // What each track was given, with the clusters that belong to it.
@@ -334,6 +366,18 @@ void Tracker::PrepareCamera(const CameraLook& look,
         std::log(camera.clutter_per_image / Cells(z, look) / (1.0 - birth_existence));
     candidate.may_start = IsFinite(z);
     candidates_.Add(candidate);
+  }
+  if (measurements.size() <= kMostBoxes) return;
+  // No picture has so many vehicles: the surest boxes count.
+  failures_.push_back(Reason::kTrackTableFull);
+  newcomers_.resize(measurements.size());
+  std::iota(newcomers_.begin(), newcomers_.end(), 0);
+  std::ranges::sort(newcomers_, {}, [&](int j) {
+    const double score = measurements[static_cast<std::size_t>(j)].score;
+    return std::pair(score > 0.0 ? -score : 0.0, j);
+  });
+  for (std::size_t k = kMostBoxes; k < newcomers_.size(); ++k) {
+    candidates_[static_cast<std::size_t>(newcomers_[k])].may_start = false;
   }
 }
 
@@ -394,29 +438,41 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
     updates_.push_back({tracks_[i].id, z});
     if (!hidden_[i].has_range) LearnRange(i, look, z);
   }
+  LookThrough(look, measurements);
+  StartFromCamera(look, camera, measurements);
+  Conclude(since_update_s_);
+}
+
+void Tracker::StartFromCamera(const CameraLook& look, int camera,
+                              std::span<const CameraMeasurement> measurements) {
   const std::size_t known = tracks_.size();
+  std::size_t started = 0;
   for (std::size_t j = 0; j < measurements.size(); ++j) {
     if (!candidates_[j].may_start) continue;
     const CameraMeasurement& z = measurements[j];
     const auto fix = FixOf(look, z);
     if (!fix) continue;
-    if ((fix->p_O - origin_O).norm() > look.camera.max_range_m) continue;
+    if ((fix->p_O - look.origin_O()).norm() > look.camera.max_range_m) continue;
+    if (started == kMostNewcomers) {
+      failures_.push_back(Reason::kTrackTableFull);
+      break;
+    }
     bool is_covered = false;
     for (std::size_t i = 0; i < known && !is_covered; ++i) {
-      is_covered = assigned_[i] < 0 && Covers(i, look, z);
+      is_covered = assigned_[i] < 0 && Covers(i, look, z, *fix);
     }
     if (is_covered) continue;
-    Start(TrackFilter::FromCamera(look, z, *fix), camera + kFirstCamera, j,
-          candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]));
-    if (tracks_.size() > known && hidden_.back().last_hit == now_) {
-      Vote(tracks_.size() - 1, z);
-      tracks_.back().last_camera = now_;
-      tracks_.back().camera_hits = 1;
-      hidden_.back().has_range = settings_.point_targets;
-      updates_.push_back({tracks_.back().id, z});
+    if (!Start(TrackFilter::FromCamera(look, z, *fix), camera + kFirstCamera, j,
+               candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]))) {
+      continue;
     }
+    ++started;
+    Vote(tracks_.size() - 1, z);
+    tracks_.back().last_camera = now_;
+    tracks_.back().camera_hits = 1;
+    hidden_.back().has_range = settings_.point_targets;
+    updates_.push_back({tracks_.back().id, z});
   }
-  Conclude(since_update_s_);
 }
 
 void Tracker::Hit(std::size_t track) { hidden_[track].last_hit = now_; }
@@ -434,15 +490,15 @@ void Tracker::Vote(std::size_t track, const CameraMeasurement& z) {
   }
 }
 
-void Tracker::Start(const TrackFilter& filter, int sensor, std::size_t index, double existence) {
+bool Tracker::Start(const TrackFilter& filter, int sensor, std::size_t index, double existence) {
   // An index beyond what an id can hold starts nothing: no scan has 256 vehicles.
-  if (index > 255) return;
+  if (index > 255) return false;
   std::uint64_t id = PackId(now_, sensor, static_cast<int>(index));
   // Two messages of one sensor may bear one stamp.
   while (std::ranges::any_of(tracks_, [id](const LocalTrack& other) { return other.id == id; })) {
     ++id;
   }
-  StartAs(id, filter, existence);
+  return StartAs(id, filter, existence);
 }
 
 bool Tracker::StartAs(std::uint64_t id, const TrackFilter& filter, double existence) {
@@ -480,8 +536,8 @@ void Tracker::Conclude(double dt_s) {
     const int hits = Hits(i);
     if (!track.is_confirmed && IsConvincing(i)) {
       track.is_confirmed = true;
-    } else if (track.is_confirmed &&
-               (track.existence < config_.keep_existence || !IsWorthListing(i))) {
+    } else if (track.is_confirmed && (track.existence < config_.keep_existence ||
+                                      !IsWorthListing(i) || IsTransparent(i))) {
       track.is_confirmed = false;
     }
     const bool was_believed = hits >= config_.confirm_hits;

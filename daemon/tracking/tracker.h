@@ -115,6 +115,8 @@ struct PoseUpdate {
 ///   track, it takes that of the nearest standing return inside the box's bearings and three sigma
 ///   of its range. What is nearer would cover the vehicle, what is farther is covered by it. Where
 ///   a return there moves, the box waits for a track of that.
+/// - What no picture shows and has never been anywhere but at the car itself (water on a radome, a
+///   tow bar) is published as little as what a camera sees another vehicle through.
 /// - A further cluster inside a tracked vehicle's footprint with its Doppler belongs to that
 /// vehicle:
 ///   it joins the measurement and starts nothing.
@@ -182,6 +184,9 @@ class Tracker {
     std::array<double, 8> class_votes{};
     Glances glances;        // While its range is a camera's guess,
     bool has_range = true;  // which it no longer is.
+    int apart_hits = 0;     // Radar clusters away from the car's own body, less those at it.
+    bool is_apart = false;  // It has been away from there.
+    int seen_through = 0;   // Pictures that showed a vehicle behind it.
     int moving_there = 0;   // Pictures in a row with something moving where it was guessed.
     bool is_far = false;    // Beyond camera_birth_range_m at its last box.
     bool is_dead = false;
@@ -192,6 +197,11 @@ class Tracker {
     int scans_ago = 0;
     int returns = 1;
     bool is_moving = false;
+  };
+  struct InSight {  // A recent return within the bearings of a track's boxes.
+    const RecentReturn* at = nullptr;
+    double misfit = 0.0;
+    double range_m = 0.0;
   };
   template <class Look, class Measurement>
   void GatePair(std::size_t track, std::size_t measurement, const Look& look, const Measurement& z);
@@ -210,25 +220,38 @@ class Tracker {
   bool Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,
             const Eigen::Vector2d& p_O) const;
   bool SeenAsTwo(std::size_t a, std::size_t b) const;
-  bool Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z) const;
+  bool Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z,
+              const Fix& fix) const;
+  /// Leaves the nearest of the measurements named, in their order. @return whether any had to go.
+  static bool KeepNearest(std::span<const RadarMeasurement> measurements, std::size_t most,
+                          std::vector<int>& which);
   void KeepReturns(const RadarLook& look, int radar,
                    std::span<const RadarMeasurement> measurements);
   struct Place {  // What the boxes of a track agree on.
     std::optional<Fix> standing;
     bool is_moving = false;
   };
-  [[nodiscard]] Place FindPlace(const Glances& glances) const;
+  [[nodiscard]] Place FindPlace(const Glances& glances);
   void LearnRange(std::size_t track, const CameraLook& look, const CameraMeasurement& z);
   void Hit(std::size_t track);
   void Vote(std::size_t track, const CameraMeasurement& z);
-  void Start(const TrackFilter& filter, int sensor, std::size_t index, double existence);
-  /// @return false when the table is full.
+  /// Both: false when the table is full.
+  bool Start(const TrackFilter& filter, int sensor, std::size_t index, double existence);
   bool StartAs(std::uint64_t id, const TrackFilter& filter, double existence);
   void JoinOwned(std::span<const RadarMeasurement> measurements);
   void DropDuplicates(double dt_s);
   [[nodiscard]] bool IsWithin(std::size_t i, std::size_t j) const;
   void JoinParts(double dt_s);
   [[nodiscard]] std::optional<double> LengthWithPart(std::size_t i, std::size_t j) const;
+  [[nodiscard]] bool IsAtOwnBody(const RadarLook& look, const Eigen::Vector2d& p_O) const;
+  void NotePlace(std::size_t track, const RadarLook& look, const Eigen::Vector2d& p_O);
+  [[nodiscard]] bool MayBeOwnBody(std::size_t track) const;
+  void LookThrough(const CameraLook& look, std::span<const CameraMeasurement> measurements);
+  [[nodiscard]] bool IsTransparent(std::size_t track) const;
+  void StartFromRadar(const RadarLook& look, int radar,
+                      std::span<const RadarMeasurement> measurements);
+  void StartFromCamera(const CameraLook& look, int camera,
+                       std::span<const CameraMeasurement> measurements);
   [[nodiscard]] int Hits(std::size_t track) const;
   [[nodiscard]] bool Borrows(std::size_t i, std::size_t j) const;
   [[nodiscard]] bool IsConvincing(std::size_t track) const;
@@ -257,7 +280,8 @@ class Tracker {
   Scratch<std::vector<Detectability>> seen_;
   Scratch<std::vector<SparsePair>> costs_;
   Scratch<std::vector<GatedPair>> pairs_;
-  Scratch<std::vector<int>> assigned_, owner_;
+  Scratch<std::vector<int>> assigned_, owner_, newcomers_;
+  Scratch<std::vector<InSight>> in_sight_;
   Scratch<ClusteredAssignmentSolver> solver_;
   Scratch<AssociationMarginals> marginals_;
 };
