@@ -23,6 +23,9 @@ constexpr double kSizePsd = 4e-4;
 
 // How far the near face of a lorry may be from where a short vehicle's model had it.
 constexpr double kFaceSigma_m = 1.5;
+// Of any vehicle's size, 1 sigma.
+constexpr double kAnyLengthSigma_m = 3.5;
+constexpr double kAnyWidthSigma_m = 0.5;
 
 constexpr int kLength = ExtendedState::kLength;
 constexpr int kWidth = ExtendedState::kWidth;
@@ -168,8 +171,11 @@ void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state) {
   Clamp(state);
 }
 
-void AssumeLongClass(ObjectClass to, const Eigen::Vector2d& seen_from_O, ExtendedState& state) {
-  const Extent size = ClassExtent(to);
+namespace {
+
+// Puts another size in, which grows away from the near face; the face stays, kFaceSigma_m
+// uncertain.
+void ReplaceSize(const Extent& size, const Eigen::Vector2d& seen_from_O, ExtendedState& state) {
   const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
   const double away = forward.dot(state.mean.head<2>() - seen_from_O) >= 0.0 ? 1.0 : -1.0;
   // Change of state per metre of length with the near face fixed.
@@ -189,6 +195,23 @@ void AssumeLongClass(ObjectClass to, const Eigen::Vector2d& seen_from_O, Extende
   state.mean += (size.length_m - state.mean[kLength]) * growth;
   state.mean[kWidth] = size.width_m;
   Clamp(state);
+}
+
+}  // namespace
+
+void AssumeLongClass(ObjectClass to, const Eigen::Vector2d& seen_from_O, ExtendedState& state) {
+  ReplaceSize(ClassExtent(to), seen_from_O, state);
+}
+
+void ReopenSize(bool is_larger, const Eigen::Vector2d& seen_from_O, ExtendedState& state) {
+  Extent size = ClassExtent(ObjectClass::kUnknown);
+  if (is_larger) {
+    size.length_m = std::max(size.length_m, state.mean[kLength]);
+    size.width_m = std::max(size.width_m, state.mean[kWidth]);
+  }
+  size.length_sigma_m = kAnyLengthSigma_m;
+  size.width_sigma_m = kAnyWidthSigma_m;
+  ReplaceSize(size, seen_from_O, state);
 }
 
 void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O,

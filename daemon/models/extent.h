@@ -70,6 +70,11 @@ void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state);
 /// it.
 void AssumeLongClass(ObjectClass to, const Eigen::Vector2d& seen_from_O, ExtendedState& state);
 
+/// Forgets the size, as nothing of it agrees with what is seen: any vehicle's from here on, a car's
+/// to begin with, or what it was where that is more and more is wanted. The near face stays where
+/// it is, 1.5 m uncertain along the axis.
+void ReopenSize(bool is_larger, const Eigen::Vector2d& seen_from_O, ExtendedState& state);
+
 /// Makes the vehicle at least `length_m` long, which is uncertain by `sigma_m`: it grows away from
 /// `seen_from_O`, the face that was measured stays where it is. Shorter ones leave it alone.
 void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O,

@@ -18,6 +18,8 @@ constexpr double kStandingMargin_m = 0.3;
 // Ahead and behind vehicles keep more distance than this from each other.
 constexpr double kEndMargin_m = 1.5;
 constexpr double kMaxBlur_m = 1.5;
+// A vehicle whose length is open does not own what lies a car's length off.
+constexpr double kMostDoubt_m = 1.5;
 // While a vehicle's direction is unknown, this round its reflecting point.
 constexpr double kPointRadius_m = 2.5;
 // Parts of one rigid body move as one; wheels and limbs of the model do not.
@@ -31,7 +33,7 @@ constexpr double kLongReachSigmas = 2.0;
 double ReachAlong(const LocalTrack& track) {
   const Extent& extent = track.extent;
   if (!IsLong(track.object_class))
-    return 0.5 * extent.length_m + extent.length_sigma_m + kEndMargin_m;
+    return 0.5 * extent.length_m + std::min(extent.length_sigma_m, kMostDoubt_m) + kEndMargin_m;
   return std::min(0.5 * extent.length_m + kLongReachSigmas * extent.length_sigma_m,
                   kLongestVehicle_m - 0.5 * extent.length_m) +
          kEndMargin_m;

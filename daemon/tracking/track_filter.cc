@@ -131,7 +131,9 @@ void TrackFilter::Lengthen(double length_m, double sigma_m) {
 
 void TrackFilter::SetClass(ObjectClass object_class) {
   if (object_class == object_class_) return;
-  if (is_vehicle_) vehicle_.AssumeClass(object_class_, object_class, seen_from_);
+  if (is_vehicle_ && !vehicle_.is_size_open()) {
+    vehicle_.AssumeClass(object_class_, object_class, seen_from_);
+  }
   object_class_ = object_class;
 }
 

@@ -45,6 +45,9 @@ constexpr double kCoastingSince_s = 0.5;
 // More tracks than this are not started by one frame.
 constexpr std::size_t kMostNewcomers = 64;
 constexpr std::size_t kMostBoxes = 128;
+// What a vehicle was called is remembered for some twenty pictures: a name that was wrong for a
+// while is overcome as fast.
+constexpr double kVoteMemory = 0.95;
 bool IsFinite(const RadarMeasurement& z) {
   return std::isfinite(z.range_m) && std::isfinite(z.azimuth_rad) &&
          std::isfinite(z.range_rate_mps) && z.covariance.allFinite() && z.range_m > 0.0;
@@ -481,6 +484,7 @@ void Tracker::Vote(std::size_t track, const CameraMeasurement& z) {
   const auto named = static_cast<std::size_t>(z.object_class);
   Hidden& hidden = hidden_[track];
   if (named == 0 || named >= hidden.class_votes.size()) return;
+  for (double& votes : hidden.class_votes) votes *= kVoteMemory;
   hidden.class_votes[named] += std::max(z.score, 0.05);
   const auto current = static_cast<std::size_t>(tracks_[track].object_class);
   // A name changes only for one that is clearly better supported.

@@ -16,6 +16,12 @@ constexpr double kInitialYawRateSigma_radps = 0.1;
 constexpr double kInitialAccelSigma_mps2 = 1.5;
 // The spread of a cluster speaks about the size only where it is not absurd.
 constexpr double kSpanGate = 9.0;
+// From this squared distance on a box may be one of a vehicle of another size: one in twenty is, so
+// much costs it. What so many boxes or clusters say counts more than a name.
+constexpr double kOddBox = 9.0;
+const double kOddSizeCost = 2.0 * std::log(20.0);
+constexpr int kOddBoxes = 2;
+constexpr int kOddSpans = 3;
 // Clusters of a vehicle of which less is visible do not measure its size: what covers it may have
 // given them a reflection.
 constexpr double kSpanShare = 0.9;
@@ -94,23 +100,52 @@ bool UpdateState(const Look& look, const Measurement& z, bool is_young,
   return true;
 }
 
-// What the spread of the cluster says about the size.
-void LearnSpan(const RadarLook& look, const RadarMeasurement& z, ObjectClass object_class,
+// What the spread of the cluster says about the size. @return false: it is too wide for this one.
+bool LearnSpan(const RadarLook& look, const RadarMeasurement& z, ObjectClass object_class,
                const FilterSettings& settings, ExtendedState& state) {
-  if (settings.point_targets || z.visible_share < kSpanShare) return;
+  if (settings.point_targets || z.visible_share < kSpanShare) return true;
   const auto span = LinearizeSpan(state, look.ego, look.radar, z);
-  if (!span) return;
+  if (!span) return true;
   const auto likelihood = EvaluateExtended(*span, state);
-  if (!likelihood || likelihood->distance_squared >= kSpanGate) return;
+  if (!likelihood || likelihood->distance_squared >= kSpanGate) return false;
   ExtendedState grown = state;
-  if (!UpdateExtended(*span, grown)) return;
+  if (!UpdateExtended(*span, grown)) return true;
   // A span bounds the length from below. Lorries show their far end last, so that it must not make
   // their length certain.
   if (IsLong(object_class)) grown.covariance = state.covariance;
   state = grown;
+  return true;
 }
-void LearnSpan(const CameraLook&, const CameraMeasurement&, ObjectClass, const FilterSettings&,
-               ExtendedState&) {}
+bool LearnSpan(const CameraLook&, const CameraMeasurement&, ObjectClass, const FilterSettings&,
+               ExtendedState&) {
+  return true;
+}
+
+// Whether a box is wider than this vehicle would show itself.
+bool IsWider(const CameraLook& look, const CameraMeasurement& z, const ExtendedState& state) {
+  const Eigen::Vector2d line = state.mean.head<2>() - look.origin_O();
+  const double aspect = std::atan2(line.y(), line.x()) - state.mean[kYaw];
+  const double across_m = std::abs(std::sin(aspect)) * state.mean[ExtendedState::kLength] +
+                          std::abs(std::cos(aspect)) * state.mean[ExtendedState::kWidth];
+  return (z.azimuth_left_rad - z.azimuth_right_rad) * line.norm() > across_m;
+}
+bool IsWider(const RadarLook&, const RadarMeasurement&, const ExtendedState&) { return true; }
+
+// The box as that of a vehicle of this motion and any size, where that explains it better.
+std::optional<Likelihood> EvaluateOddSize(const CameraLook& look, const CameraMeasurement& z,
+                                          const Likelihood& named, const ExtendedState& state) {
+  if (!(named.distance_squared > kOddBox)) return std::nullopt;
+  ExtendedState open = state;
+  ReopenSize(IsWider(look, z, state), look.origin_O(), open);
+  const auto model = Linearize(open, open.assumed_extent(), look, z);
+  if (!model) return std::nullopt;
+  auto likelihood = EvaluateExtended(*model, open);
+  if (!likelihood) return std::nullopt;
+  likelihood->log_det += kOddSizeCost;
+  const bool is_better =
+      likelihood->distance_squared + likelihood->log_det < named.distance_squared + named.log_det;
+  return is_better ? likelihood : std::nullopt;
+}
 
 }  // namespace
 
@@ -184,6 +219,9 @@ VehicleFilter& VehicleFilter::operator=(const VehicleFilter& other) {
   std::copy_n(other.components_.begin(), other.count_, components_.begin());
   count_ = other.count_;
   has_driven_ = other.has_driven_;
+  is_size_open_ = other.is_size_open_;
+  odd_boxes_ = other.odd_boxes_;
+  odd_spans_ = other.odd_spans_;
   return *this;
 }
 
@@ -226,7 +264,8 @@ std::optional<Likelihood> VehicleFilter::Evaluate(const Look& look, const Measur
     // A radar track is measured against what the box says it is: an 11 m lorry's silhouette is no
     // outlier of a car's.
     if constexpr (kLearnsSize<Measurement>) {
-      if (object_class == ObjectClass::kUnknown && z.object_class != ObjectClass::kUnknown) {
+      if (object_class == ObjectClass::kUnknown && z.object_class != ObjectClass::kUnknown &&
+          !is_size_open_) {
         named = *state;
         Rename(object_class, z.object_class, look.origin_O(), named);
         state = &named;
@@ -234,8 +273,13 @@ std::optional<Likelihood> VehicleFilter::Evaluate(const Look& look, const Measur
     }
     const auto model = Linearize(*state, AssumedExtent(*state, settings), look, z);
     if (!model) continue;
-    const auto likelihood = EvaluateExtended(*model, *state);
+    auto likelihood = EvaluateExtended(*model, *state);
     if (!likelihood) continue;
+    if constexpr (kLearnsSize<Measurement>) {
+      if (!settings.point_targets) {
+        if (const auto odd = EvaluateOddSize(look, z, *likelihood, *state)) likelihood = odd;
+      }
+    }
     const double cost =
         likelihood->distance_squared + likelihood->log_det - 2.0 * std::log(components_[i].weight);
     if (!best || cost < least) {
@@ -250,11 +294,41 @@ std::optional<Likelihood> VehicleFilter::Evaluate(const Look& look, const Measur
   return best;
 }
 
+// Whether the likeliest component takes the measurement for one of a vehicle of another size.
+template <class Look, class Measurement>
+bool VehicleFilter::IsOdd(const Look& look, const Measurement& z,
+                          const FilterSettings& settings) const {
+  if constexpr (kLearnsSize<Measurement>) {
+    if (settings.point_targets) return false;
+    const auto model = Linearize(best(), AssumedExtent(best(), settings), look, z);
+    const auto named = model ? EvaluateExtended(*model, best()) : std::nullopt;
+    return named && EvaluateOddSize(look, z, *named, best());
+  } else {
+    return false;
+  }
+}
+
+void VehicleFilter::Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    ReopenSize(is_larger, seen_from_O, components_[i].state);
+  }
+  is_size_open_ = true;
+  odd_boxes_ = odd_spans_ = 0;
+}
+
 template <class Look, class Measurement>
 bool VehicleFilter::Update(const Look& look, const Measurement& z, ObjectClass object_class,
                            bool is_young, const FilterSettings& settings) {
+  if (IsOdd(look, z, settings)) {
+    // One such box may show two vehicles as one.
+    if (++odd_boxes_ < kOddBoxes) return true;
+    Reopen(IsWider(look, z, best()), look.origin_O());
+  } else if (kLearnsSize<Measurement>) {
+    odd_boxes_ = 0;
+  }
   std::array<double, kMostAxes> fit{};
   std::size_t kept = 0;
+  bool fits = false;
   for (std::size_t i = 0; i < count_; ++i) {
     Component& component = components_[i];
     double log_likelihood = 0.0;
@@ -266,13 +340,14 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, ObjectClass o
       log_likelihood = -0.5 * (likelihood->distance_squared + likelihood->log_det);
     }
     if (!UpdateState(look, z, is_young, settings, component.state)) continue;
-    LearnSpan(look, z, object_class, settings, component.state);
+    fits = LearnSpan(look, z, object_class, settings, component.state) || fits;
     fit[kept] = log_likelihood;
     if (kept != i) components_[kept] = component;
     ++kept;
   }
   if (kept == 0) return false;
   count_ = kept;
+  if (!fits && ++odd_spans_ >= kOddSpans) Reopen(true, look.origin_O());
   if (count_ > 1) Weigh(std::span(fit).first(count_));
   TurnRound();
   return true;

@@ -25,6 +25,10 @@ struct FilterSettings {
 /// starts with four, its axis along, across and diagonal to a likely direction: which of them the
 /// silhouettes and reflections fit is decided by Bayes' rule, component by component, and those
 /// that do not fit are dropped.
+///
+/// The size starts with that of a class, and a class is only a name: where box after box, or the
+/// spread of cluster after cluster, fits any size better than this one, the size is forgotten and
+/// learnt anew, from what is seen alone.
 class VehicleFilter {
  public:
   static constexpr std::size_t kMostAxes = 4;
@@ -67,6 +71,8 @@ class VehicleFilter {
   /// Seen in motion: front and rear are told apart.
   [[nodiscard]] bool has_driven() const { return has_driven_; }
 
+  /// The size has been forgotten once: no name of a class means anything to it any more.
+  [[nodiscard]] bool is_size_open() const { return is_size_open_; }
   void AssumeClass(ObjectClass from, ObjectClass to, const Eigen::Vector2d& seen_from_O);
   void Lengthen(double length_m, double sigma_m, const Eigen::Vector2d& seen_from_O);
 
@@ -83,12 +89,18 @@ class VehicleFilter {
     ExtendedState state;
     double weight = 1.0;
   };
+  template <class Look, class Measurement>
+  bool IsOdd(const Look& look, const Measurement& z, const FilterSettings& settings) const;
+  void Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O);
   void Weigh(std::span<const double> log_likelihoods);
   void TurnRound();
 
   std::array<Component, kMostAxes> components_;  // The first count_ are in use, likeliest first.
   std::size_t count_ = 0;
   bool has_driven_ = false;  // Seen in motion: front and rear are told apart.
+  bool is_size_open_ = false;
+  int odd_boxes_ = 0;  // In a row that fit another size.
+  int odd_spans_ = 0;  // Clusters too wide for it, since the last one that was not.
 };
 
 /// A vehicle whose reflecting point is known and whose direction is `yaw_rad`, given (with
