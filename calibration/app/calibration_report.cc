@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include "calibration/app/calibration_run.h"
+#include "daemon/io/durable_file.h"
 #include "sim/evaluation/report_style.h"
 #include "sim/evaluation/svg.h"
 
@@ -265,12 +265,7 @@ bool WriteCalibrationReport(const CalibrationRun& run, const std::string& folder
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   const auto path = std::filesystem::path(folder) / "index.html";
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << Page(run);
-  file.close();
-  if (file.good()) return true;
-  error = path.string() + ": cannot be written";
-  return false;
+  return ReplaceFile(path.string(), Page(run), error);
 }
 
 }  // namespace v2vouch

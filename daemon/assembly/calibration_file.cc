@@ -78,7 +78,7 @@ bool IsApplied(CalibrationVerdict verdict) {
 }
 
 bool SaveCalibration(const std::string& path, const CalibrationFile& calibration,
-                     std::string& error) {
+                     std::string& error, std::span<const std::string> inputs) {
   std::vector<std::string> problems;
   CheckCalibration(calibration, path, problems);
   if (!problems.empty()) {
@@ -88,7 +88,7 @@ bool SaveCalibration(const std::string& path, const CalibrationFile& calibration
   std::string text(kHeader);
   text += config::Print(calibration);
   text += std::string(kChecksumKey) + ChecksumOf(text) + "\n";
-  return ReplaceFile(path, text, error);
+  return ReplaceFile(path, text, error, inputs);
 }
 
 std::optional<CalibrationFile> LoadCalibration(const std::string& path,

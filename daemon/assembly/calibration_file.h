@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,7 +52,7 @@ void CheckCalibration(const CalibrationFile& calibration, const std::string& nam
 /// last line. A power failure leaves the old file or the new one, whole. What CheckCalibration
 /// refuses is not written.
 bool SaveCalibration(const std::string& path, const CalibrationFile& calibration,
-                     std::string& error);
+                     std::string& error, std::span<const std::string> inputs = {});
 
 /// @return nullopt with everything named that was wrong; a file that is not bit for bit what was
 /// written (cut short, damaged, edited) is refused unread.

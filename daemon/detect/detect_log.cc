@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/detect/detect_log.h"
 
-#include <filesystem>
 #include <memory>
 #include <set>
 
@@ -33,14 +32,9 @@ Result<CameraDetections> Look(const wire::InputDecoder& decoder, std::size_t cha
 bool DetectLog(const std::string& in, const std::string& out, const DaemonConfig& config,
                ObjectDetector& detector, const std::function<bool(double)>& progress,
                DetectLogResult& result, std::string& error) {
-  std::error_code ignored;
-  if (std::filesystem::equivalent(in, out, ignored)) {
-    error = out + ": is the log that is being read";
-    return false;
-  }
   const auto reader = LogReader::Open(in, error);
   if (!reader) return false;
-  const auto writer = LogWriter::Create(out, error);
+  const auto writer = LogWriter::Create(out, error, std::span(&in, 1));
   if (!writer) return false;
 
   const VehicleConfig& vehicle = config.perception.vehicle;
@@ -58,6 +52,7 @@ bool DetectLog(const std::string& in, const std::string& out, const DaemonConfig
       error = "stopped";
       return false;
     }
+    if (!writer->is_good()) break;
     if (detected.contains(event.channel)) continue;
     writer->Write(event.received, event.channel, event.bytes);
     const auto channel = decoder.Find(event.channel);

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "daemon/data/object_class.h"
+#include "daemon/io/durable_file.h"
 
 namespace v2vouch {
 namespace {
@@ -62,7 +63,8 @@ cv::Mat ReadPicture(const std::string& path, std::string& error) {
 }
 
 bool WriteAnnotated(const std::string& path, const cv::Mat& bgr,
-                    const std::vector<CameraBox>& boxes) {
+                    const std::vector<CameraBox>& boxes, std::span<const std::string> inputs,
+                    std::string& error) {
   cv::Mat canvas = bgr.clone();
   for (const CameraBox& box : boxes) {
     const cv::Rect2d frame(box.left_px, box.top_px, box.width_px, box.height_px);
@@ -76,8 +78,12 @@ bool WriteAnnotated(const std::string& path, const cv::Mat& bgr,
     cv::putText(canvas, label, at, cv::FONT_HERSHEY_SIMPLEX, 0.45, colour, 1, cv::LINE_AA);
   }
   try {
-    return cv::imwrite(path, canvas);
+    std::vector<std::uint8_t> png;
+    cv::imencode(".png", canvas, png);
+    return ReplaceFile(path, {reinterpret_cast<const char*>(png.data()), png.size()}, error,
+                       inputs);
   } catch (const cv::Exception&) {
+    error = path + ": cannot be made a PNG";
     return false;
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,11 @@ namespace v2vouch {
 /// none.
 cv::Mat ReadPicture(const std::string& path, std::string& error);
 
-/// A picture file with `boxes` drawn in, class and score beside each. @return false where it cannot
-/// be written.
+/// A PNG file with `boxes` drawn in, class and score beside each. None of `inputs` is overwritten.
+/// @return false with `error` set where it cannot be written.
 bool WriteAnnotated(const std::string& path, const cv::Mat& bgr,
-                    const std::vector<CameraBox>& boxes);
+                    const std::vector<CameraBox>& boxes, std::span<const std::string> inputs,
+                    std::string& error);
 
 /// Copies of a picture as a camera would give them in worse light, the same every time:
 ///   dark   a sixteenth of the light, with the noise that brings (sigma 4 of 255)

@@ -11,6 +11,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "daemon/io/output_file.h"
+
 namespace v2vouch {
 namespace {
 
@@ -32,13 +34,30 @@ bool SyncFolder(const std::string& folder) {
   return is_synced;
 }
 
+bool WriteStream(const std::string& path, std::string_view content, std::string& error) {
+  std::FILE* stream = OpenOutput(path, {}, error);
+  if (stream == nullptr) return false;
+  bool is_good = std::fwrite(content.data(), 1, content.size(), stream) == content.size();
+  is_good &= std::fflush(stream) == 0;
+  if (!is_good) error = path + ": cannot write: " + std::strerror(errno);
+  if (std::fclose(stream) != 0 && is_good) {
+    error = path + ": cannot write: " + std::strerror(errno);
+    return false;
+  }
+  return is_good;
+}
+
 }  // namespace
 
-bool ReplaceFile(const std::string& path, std::string_view content, std::string& error) {
+bool ReplaceFile(const std::string& path, std::string_view content, std::string& error,
+                 std::span<const std::string> inputs) {
   const auto fail = [&](const std::string& what) {
     error = path + ": " + what + ": " + std::strerror(errno);
     return false;
   };
+  const OutputPlace place = LookAtOutput(path, inputs, error);
+  if (place == OutputPlace::kRefused) return false;
+  if (place == OutputPlace::kStream) return WriteStream(path, content, error);
   std::string folder = std::filesystem::path(path).parent_path().string();
   if (folder.empty()) folder = ".";
 

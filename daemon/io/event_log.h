@@ -69,13 +69,17 @@ class LogReader {
 /// Writes the same format; event numbers count from 0.
 class LogWriter {
  public:
-  static std::unique_ptr<LogWriter> Create(const std::string& path, std::string& error);
+  /// @param inputs files that are read meanwhile: none of them is overwritten (output_file.h).
+  static std::unique_ptr<LogWriter> Create(const std::string& path, std::string& error,
+                                           std::span<const std::string> inputs = {});
   ~LogWriter();
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
   /// `channel` has 1..63 bytes, `bytes` at most 64 MiB.
   void Write(Timestamp received, std::string_view channel, std::span<const std::uint8_t> bytes);
+  /// False once something could not be written; no use in going on then.
+  [[nodiscard]] bool is_good() const { return errno_ == 0; }
   /// Flushes and closes. @return false with `error` set when anything could not be written.
   bool Close(std::string& error);
 

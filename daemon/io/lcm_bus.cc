@@ -3,12 +3,11 @@
 
 #include <lcm/lcm.h>
 
-#include <algorithm>
-#include <array>
 #include <string_view>
 #include <utility>
 
 #include "daemon/io/event_log.h"
+#include "daemon/io/lcm_url.h"
 
 namespace v2vouch {
 namespace {
@@ -52,6 +51,7 @@ void OnReceive(const lcm_recv_buf_t* buffer, const char*, void* user) {
 }  // namespace
 
 std::unique_ptr<LcmBus> LcmBus::Open(const std::string& url) {
+  if (!LcmUrlProblems(EffectiveLcmUrl(url)).empty()) return nullptr;
   lcm_t* lcm = lcm_create(url.empty() ? nullptr : url.c_str());
   if (lcm == nullptr) return nullptr;
   return std::unique_ptr<LcmBus>(new LcmBus(lcm));
@@ -76,13 +76,6 @@ bool LcmBus::Handle(int timeout_ms) { return lcm_handle_timeout(lcm_, timeout_ms
 bool LcmBus::Publish(const std::string& channel, std::span<const std::uint8_t> bytes) {
   return lcm_publish(lcm_, channel.c_str(), bytes.data(),
                      static_cast<unsigned int>(bytes.size())) == 0;
-}
-
-bool IsLcmUrl(const std::string& url) {
-  constexpr std::array<std::string_view, 5> kProviders = {"udpm://", "memq://", "file://",
-                                                          "tcpq://", "mpudpm://"};
-  return url.empty() || std::any_of(kProviders.begin(), kProviders.end(),
-                                    [&](auto provider) { return url.starts_with(provider); });
 }
 
 }  // namespace v2vouch

@@ -24,7 +24,8 @@ class LcmBus {
                                      Timestamp received)>;
 
   /// @param url "" = the environment's LCM_DEFAULT_URL, else LCM's own default.
-  /// @return nullptr where there is no way out yet, e.g. no multicast route while the machine
+  /// @return nullptr where the URL is wrong (LcmUrlProblems() tells; liblcm is not asked, which
+  /// would abort at some), or there is no way out yet, e.g. no multicast route while the machine
   /// boots.
   static std::unique_ptr<LcmBus> Open(const std::string& url);
   ~LcmBus();
@@ -47,8 +48,5 @@ class LcmBus {
   lcm_t* lcm_;
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
 };
-
-/// Whether LCM 1.3.1 knows a provider for this URL ("" included).
-bool IsLcmUrl(const std::string& url);
 
 }  // namespace v2vouch

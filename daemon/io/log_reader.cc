@@ -35,8 +35,13 @@ bool AreInRange(Lengths lengths) {
 }  // namespace
 
 std::unique_ptr<LogReader> LogReader::Open(const std::string& path, std::string& error) {
-  std::FILE* file = std::fopen(path.c_str(), "rb");
   struct stat status {};
+  // Opening a pipe would wait for a writer.
+  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+    error = path + ": is not a file";
+    return nullptr;
+  }
+  std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr || fstat(fileno(file), &status) != 0) {
     error = path + ": " + std::strerror(errno);
     if (file != nullptr) std::fclose(file);

@@ -6,17 +6,16 @@
 #include "daemon/base/check.h"
 #include "daemon/io/event_log.h"
 #include "daemon/io/log_format.h"
+#include "daemon/io/output_file.h"
 
 namespace v2vouch {
 
 using log_format::Store;
 
-std::unique_ptr<LogWriter> LogWriter::Create(const std::string& path, std::string& error) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) {
-    error = path + ": " + std::strerror(errno);
-    return nullptr;
-  }
+std::unique_ptr<LogWriter> LogWriter::Create(const std::string& path, std::string& error,
+                                             std::span<const std::string> inputs) {
+  std::FILE* file = OpenOutput(path, inputs, error);
+  if (file == nullptr) return nullptr;
   // Lists are written every few milliseconds of a log: fewer, larger writes.
   std::setvbuf(file, nullptr, _IOFBF, 1U << 18);
   std::unique_ptr<LogWriter> writer(new LogWriter);

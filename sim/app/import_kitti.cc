@@ -2,6 +2,7 @@
 #include "sim/app/import_kitti.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "sim/app/import_output.h"
@@ -83,7 +84,7 @@ int ImportKitti(const KittiRequest& given) {
   const auto measured = std::count_if(motion.begin(), motion.end(),
                                       [](const KittiMotion& m) { return m.is_measured; });
   return WriteImportedLog(
-      request.out, events,
+      request.out, std::array{request.labels, request.calibration, request.oxts}, events,
       {{"frames", motion.size()},
        {"pictures", count},
        {"ego_from", source},

@@ -24,10 +24,11 @@ void TellFigures(const nlohmann::ordered_json& figures, bool as_json) {
   }
 }
 
-int WriteImportedLog(const std::string& out, const std::vector<ImportedEvent>& events,
+int WriteImportedLog(const std::string& out, std::span<const std::string> inputs,
+                     const std::vector<ImportedEvent>& events,
                      const nlohmann::ordered_json& figures, bool as_json) {
   std::string error;
-  const auto writer = LogWriter::Create(out, error);
+  const auto writer = LogWriter::Create(out, error, inputs);
   if (writer == nullptr) return ImportFailed(error);
   std::map<std::string, std::int64_t> channels;
   for (const ImportedEvent& event : events) {

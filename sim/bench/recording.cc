@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "daemon/base/angle.h"
+#include "daemon/io/output_file.h"
 #include "sim/import/csv.h"
 
 namespace v2vouch::bench {
@@ -69,13 +70,11 @@ std::optional<Recording> ReadRecording(const std::string& path, std::string& err
   return out;
 }
 
-bool WriteRecording(const Recording& recording, const std::string& path, std::string& error) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "w"),
+bool WriteRecording(const Recording& recording, const std::string& path, std::string& error,
+                    std::span<const std::string> inputs) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(OpenOutput(path, inputs, error),
                                                              &std::fclose);
-  if (file == nullptr) {
-    error = path + ": cannot be written: " + std::strerror(errno);
-    return false;
-  }
+  if (file == nullptr) return false;
   std::fputs("frame,t,kind,id,x,y,v,yaw,yaw_rate\n", file.get());
   for (const Frame& frame : recording) {
     const auto write = [&](char kind, const std::vector<VehiclePose>& rows) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,9 @@ using Recording = std::vector<Frame>;  ///< Time rises strictly.
 std::optional<Recording> ReadRecording(const std::string& path, std::string& error);
 
 /// @return false with `error` when the file cannot be written.
-bool WriteRecording(const Recording& recording, const std::string& path, std::string& error);
+/// None of `inputs` is overwritten.
+bool WriteRecording(const Recording& recording, const std::string& path, std::string& error,
+                    std::span<const std::string> inputs = {});
 
 /// The same traffic on a road turned by `angle_rad` about the origin. Quarter turns are exact.
 Recording Rotated(const Recording& recording, double angle_rad);

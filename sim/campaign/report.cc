@@ -2,8 +2,8 @@
 #include "sim/campaign/report.h"
 
 #include <algorithm>
-#include <fstream>
 
+#include "daemon/io/durable_file.h"
 #include "sim/campaign/families.h"
 #include "sim/campaign/report_plots.h"
 #include "sim/campaign/targets.h"
@@ -204,11 +204,7 @@ std::filesystem::path WriteReport(const std::filesystem::path& folder, const Sum
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   const std::filesystem::path path = folder / "index.html";
-  std::ofstream file(path);
-  file << ReportHtml(summary);
-  file.close();
-  if (file) return path;
-  problem = "cannot write " + path.string();
+  if (ReplaceFile(path.string(), ReportHtml(summary), problem)) return path;
   return {};
 }
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
+#include "daemon/io/durable_file.h"
 #include "sim/evaluation/behaviour_text.h"
 #include "sim/evaluation/birds_eye.h"
 #include "sim/evaluation/moments.h"
@@ -215,14 +215,9 @@ std::string WriteReport(const std::string& folder, const Evaluation& evaluation,
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   const auto path = std::filesystem::path(folder) / "index.html";
-  std::ofstream file(path, std::ios::binary);
-  file << ReportHtml(evaluation, paper, pictures);
-  file.close();
-  if (!file) {
-    error = "cannot write " + path.string();
-    return "";
-  }
-  return path.string();
+  const bool is_written =
+      ReplaceFile(path.string(), ReportHtml(evaluation, paper, pictures), error);
+  return is_written ? path.string() : "";
 }
 
 }  // namespace v2vouch::evaluation

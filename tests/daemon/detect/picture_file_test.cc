@@ -11,13 +11,15 @@ namespace {
 TEST(PictureFile, DrawnBoxesAreReadBack) {
   const std::string path = testing::TempDir() + "v2vouch_drawn.png";
   const cv::Mat black(80, 100, CV_8UC3, cv::Scalar::all(0));
-  ASSERT_TRUE(WriteAnnotated(path, black, {{20, 30, 40, 30, ObjectClass::kCar, 0.9}}));
   std::string error;
+  ASSERT_TRUE(WriteAnnotated(path, black, {{20, 30, 40, 30, ObjectClass::kCar, 0.9}}, {}, error));
   const cv::Mat drawn = ReadPicture(path, error);
   ASSERT_EQ(drawn.size(), black.size()) << error;
   EXPECT_GT(drawn.at<cv::Vec3b>(45, 20)[1], 150);  // Green frame of a car.
   EXPECT_EQ(drawn.at<cv::Vec3b>(45, 40)[1], 0);
-  EXPECT_FALSE(WriteAnnotated("/nowhere/x.png", black, {}));
+  EXPECT_FALSE(WriteAnnotated("/nowhere/x.png", black, {}, {}, error));
+  EXPECT_FALSE(WriteAnnotated(path, black, {}, std::vector<std::string>{path}, error));
+  EXPECT_EQ(error, path + ": is the file that is being read");
 }
 
 TEST(PictureFile, WhatIsNoPictureIsNamed) {

@@ -133,7 +133,7 @@ TEST_F(ReplayTest, FilesThatCannotBeUsedSayWhy) {
   EXPECT_THAT(error, ::testing::HasSubstr("No such file"));
   const std::string in = Save("in.lcm", Drive());
   EXPECT_FALSE(Replay(in, in, DaemonConfig{}, go_on, result, error));
-  EXPECT_THAT(error, ::testing::HasSubstr("is the log that is being read"));
+  EXPECT_THAT(error, ::testing::HasSubstr("is the file that is being read"));
   EXPECT_FALSE(Replay(in, Path("no/folder/out.lcm"), DaemonConfig{}, go_on, result, error));
 }
 

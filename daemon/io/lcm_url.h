@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace v2vouch {
+
+/// What is wrong with an LCM URL; nothing where it is good ("" = LCM's default included). Stricter
+/// than liblcm 1.3.1, which aborts at `tcpq://`, hears nothing without a port or on a group that is
+/// none, and ignores options that it does not know.
+///
+///     udpm://GROUP:PORT?ttl=0&recv_buf_size=4194304    (mpudpm:// likewise)
+///     memq://    file://PATH?mode=r&speed=1&start_timestamp=0    tcpq://HOST:PORT
+std::vector<std::string> LcmUrlProblems(const std::string& url);
+
+/// The first of them or "": the form in which command lines want it.
+std::string CheckLcmUrl(const std::string& url);
+
+/// What LCM will use where `url` is "": the environment's LCM_DEFAULT_URL, or "".
+std::string EffectiveLcmUrl(const std::string& url);
+
+/// UDP port of a good URL (after EffectiveLcmUrl); 0 where it has none.
+int LcmUdpPort(const std::string& url);
+
+}  // namespace v2vouch
