@@ -22,14 +22,16 @@ std::optional<Arrival> MessageQueue::Pop(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   has_some_.wait_for(lock, timeout,
                      [this] { return !own_.waiting.empty() || !bsm_.waiting.empty(); });
-  std::deque<Arrival>* oldest = nullptr;
-  for (std::deque<Arrival>* waiting : {&own_.waiting, &bsm_.waiting}) {
-    if (waiting->empty()) continue;
-    if (oldest == nullptr || waiting->front().number < oldest->front().number) oldest = waiting;
-  }
-  if (oldest == nullptr) return std::nullopt;
-  Arrival arrival = std::move(oldest->front());
-  oldest->pop_front();
+  if (own_.waiting.empty() && bsm_.waiting.empty()) return std::nullopt;
+  // How many BSMs came before the oldest own message: none, a few, or a backlog.
+  const auto is_before_own = [this](std::size_t bsm) {
+    return bsm < bsm_.waiting.size() &&
+           (own_.waiting.empty() || bsm_.waiting[bsm].number < own_.waiting.front().number);
+  };
+  const bool is_bsm = is_before_own(0) && (own_.waiting.empty() || !is_before_own(kMostAhead));
+  std::deque<Arrival>& waiting = is_bsm ? bsm_.waiting : own_.waiting;
+  Arrival arrival = std::move(waiting.front());
+  waiting.pop_front();
   return arrival;
 }
 

@@ -32,6 +32,10 @@ struct Arrival {
 
 /// Between the receiving threads and the fusion thread. Own sensors and BSMs wait in queues of
 /// their own, so that a radio flood cannot push out a radar; each drops its oldest when full.
+///
+/// While the daemon keeps up, the order is that of arrival: the few BSMs that came before a frame
+/// are in its PRIORITY list, live as in a replay. A backlog is not waited for: where more than
+/// kMostAhead BSMs stand before an own message, it overtakes them all.
 class MessageQueue {
  public:
   MessageQueue(std::size_t own_capacity, std::size_t bsm_capacity)
@@ -40,7 +44,10 @@ class MessageQueue {
   void PushOwn(Arrival arrival) { Push(own_, std::move(arrival)); }
   void PushBsm(Arrival arrival) { Push(bsm_, std::move(arrival)); }
 
-  /// The oldest of both queues by number; nullopt when none came in time.
+  static constexpr std::size_t kMostAhead = 16;
+
+  /// The oldest of both queues by number, but for a backlog of BSMs; nullopt when none came in
+  /// time.
   std::optional<Arrival> Pop(std::chrono::milliseconds timeout);
 
   /// Something of an own sensor waits.

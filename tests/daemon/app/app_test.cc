@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "daemon/app/detect_thread.h"
+#include "daemon/app/foreign_outputs.h"
 #include "daemon/app/latency_meter.h"
 #include "daemon/app/message_queue.h"
 #include "daemon/wire/codec.h"
@@ -32,6 +33,33 @@ TEST(MessageQueue, PopsInOrderOfArrivalOverBothQueues) {
   EXPECT_FALSE(queue.Pop(0ms));
 }
 
+// A backlog of the radio's must not stand before a radar scan.
+TEST(MessageQueue, OwnSensorsOvertakeABacklogOfBsms) {
+  MessageQueue queue(1000, 1000);
+  for (int i = 0; i < 500; ++i) queue.PushBsm(Named("bsm"));
+  queue.PushOwn(Named("radar"));
+  queue.PushOwn(Named("camera"));
+  EXPECT_EQ(queue.Pop(0ms)->channel, "radar");
+  EXPECT_EQ(queue.Pop(0ms)->channel, "camera");
+  int left = 0;
+  while (queue.Pop(0ms)) ++left;
+  EXPECT_EQ(left, 500);
+  EXPECT_EQ(queue.bsm_drops(), 0);
+}
+
+// After a pause of the whole process: many wait, but few before each own message.
+TEST(MessageQueue, ABacklogOfAllKeepsTheOrderOfArrival) {
+  MessageQueue queue(1000, 1000);
+  std::vector<std::string> expected;
+  for (int i = 0; i < 20; ++i) {
+    for (std::size_t k = 0; k < MessageQueue::kMostAhead; ++k) {
+      queue.PushBsm(Named(expected.emplace_back("bsm" + std::to_string(i))));
+    }
+    queue.PushOwn(Named(expected.emplace_back("radar" + std::to_string(i))));
+  }
+  for (const std::string& channel : expected) EXPECT_EQ(queue.Pop(0ms)->channel, channel);
+}
+
 TEST(MessageQueue, FloodOfBsmsDropsOldBsmsAndNoOwnSensor) {
   MessageQueue queue(4, 3);
   queue.PushOwn(Named("radar"));
@@ -41,6 +69,27 @@ TEST(MessageQueue, FloodOfBsmsDropsOldBsmsAndNoOwnSensor) {
   for (const char* expected : {"radar", "bsm7", "bsm8", "bsm9"}) {
     EXPECT_EQ(queue.Pop(0ms)->channel, expected);
   }
+}
+
+std::vector<std::uint8_t> Message(std::uint8_t content) { return {1, 2, content}; }
+
+TEST(ForeignOutputs, OwnMessagesComeBackOnceAndAreNotForeign) {
+  ForeignOutputs outputs;
+  for (std::uint8_t i = 0; i < 200; ++i) outputs.Sent(Message(i));
+  for (std::uint8_t i = 0; i < 200; ++i) outputs.Heard(Message(i));
+  EXPECT_EQ(outputs.count(), 0);
+}
+
+// A second daemon that hears the same sensors sends the same lists, bit for bit.
+TEST(ForeignOutputs, ASecondCopyIsAnothersWhicheverComesFirst) {
+  ForeignOutputs outputs;
+  outputs.Heard(Message(1));
+  outputs.Sent(Message(1));
+  outputs.Heard(Message(1));
+  outputs.Sent(Message(2));
+  outputs.Heard(Message(2));
+  outputs.Heard(Message(2));
+  EXPECT_EQ(outputs.count(), 2);
 }
 
 TEST(LatencyMeter, ReportsNearestRankAndStartsAgain) {
