@@ -151,6 +151,7 @@ bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
                       std::vector<std::string>& problems, std::vector<std::string>* notes) {
   if (!path.empty()) {
     const DetectorConfig before = config.detector;
+    const std::string state_before = config.state.file;
     config::Load(path, config, problems, notes);
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     const auto beside = [&](std::string& file, const std::string& old) {
@@ -158,6 +159,7 @@ bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
     };
     beside(config.detector.model, before.model);
     beside(config.detector.network, before.network);
+    beside(config.state.file, state_before);
   }
   CheckConfig(config, path.empty() ? "built-in configuration" : path, problems);
   config.calibrated.reset();

@@ -33,6 +33,25 @@ struct LcmConfig {
   }
 };
 
+/// What the daemon keeps over a restart: penalties of senders, and who was relied on. Tracks start
+/// from scratch. Replay reads it where asked, with --state.
+struct StateConfig {
+  bool enabled = true;
+  /// From this file's folder; "" = trust.state in the environment's STATE_DIRECTORY (a service of
+  /// systemd with StateDirectory=), else none.
+  std::string file;
+  double max_age_s = 86400.0;  ///< Older content is not used.
+  double period_s = 2.0;       ///< How often it is looked whether something has changed.
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("enabled", enabled);
+    a.Text("file", file);
+    a.Field("max_age_s", max_age_s, {.at_least = 0.0, .at_most = 31536000.0});
+    a.Field("period_s", period_s, {.at_least = 0.1, .at_most = 3600.0});
+  }
+};
+
 /// Everything in vehicle.yaml. The defaults are the shipped vehicle (daemon/config/vehicle.yaml).
 struct DaemonConfig {
   std::string calibration;  ///< File of calibrated values, from this file's folder; "" = none.
@@ -41,6 +60,7 @@ struct DaemonConfig {
   MountMonitorConfig mount_monitor;
   DetectorConfig detector;  ///< Replay has no use for it: it takes what the network saw.
   LcmConfig lcm;
+  StateConfig state;
   /// What `calibration` held; its values are in perception.vehicle already.
   std::optional<CalibrationFile> calibrated;
 
@@ -52,6 +72,7 @@ struct DaemonConfig {
     a.Field("mount_monitor", mount_monitor);
     a.Field("detector", detector);
     a.Field("lcm", lcm);
+    a.Field("state", state);
   }
 };
 

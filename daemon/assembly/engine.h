@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "calibration/monitor/mount_monitor.h"
@@ -79,6 +80,12 @@ class Engine {
   /// Where no message comes: it is `at` now, on the clock of `received`.
   void AdvanceTo(Timestamp at) { watch_.AdvanceTo(at); }
   void PublishStatus(Outbox& outbox);
+
+  /// What of the trust in senders outlives a restart, and back before the first message.
+  [[nodiscard]] std::vector<TrustMemory> TrustToKeep() const { return perception_.TrustToKeep(); }
+  void RestoreTrust(std::vector<TrustMemory> memories) {
+    perception_.RestoreTrust(std::move(memories));
+  }
 
   void SetShellFigures(const ShellFigures& figures) { figures_ = figures; }
 

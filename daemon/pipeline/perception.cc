@@ -193,7 +193,10 @@ void Perception::State::Settle() {
 }
 
 void Perception::State::Restart() {
+  // A step of the clock washes nobody's penalty off.
+  std::vector<TrustMemory> kept = timeline.priority().TrustToKeep(timeline.newest_time());
   timeline = Timeline(config);
+  timeline.RestoreTrust(std::move(kept));
   intake = BsmIntake(config.v2v);
   bias->Restart();
   listed = {};
@@ -307,6 +310,14 @@ void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
 }
 
 std::optional<Timestamp> Perception::agreed_time() const { return state_->clock.agreed(); }
+
+std::vector<TrustMemory> Perception::TrustToKeep() const {
+  return state_->timeline.priority().TrustToKeep(state_->timeline.newest_time());
+}
+
+void Perception::RestoreTrust(std::vector<TrustMemory> memories) {
+  state_->timeline.RestoreTrust(std::move(memories));
+}
 
 Timestamp Perception::newest_frame() const {
   const LocalFrame* frame = state_->timeline.newest_frame();

@@ -11,6 +11,7 @@
 #include "daemon/data/input.h"
 #include "daemon/data/outputs.h"
 #include "daemon/pipeline/perception_config.h"
+#include "daemon/trust/trust_memory.h"
 
 namespace v2vouch {
 
@@ -34,6 +35,12 @@ class Perception {
 
   /// What time it is by most own sensors; nullopt before the first message.
   [[nodiscard]] std::optional<Timestamp> agreed_time() const;
+
+  /// What of the trust in senders outlives a restart, as of the newest event; and where it goes
+  /// back to, before the first input.
+  [[nodiscard]] std::vector<TrustMemory> TrustToKeep() const;
+  void RestoreTrust(std::vector<TrustMemory> memories);
+
   /// Newest time of any own-sensor frame; the clock of everything that is published.
   [[nodiscard]] Timestamp newest_frame() const;
   [[nodiscard]] int sender_count() const;

@@ -54,6 +54,7 @@ void PriorityPerception::OnFrame(const LocalFrame& frame, const VisibilityMap& m
   if (config.association == AssociationMode::kPaper) {
     return paper_.OnFrame(frame.stamp, frame.tracks, config.paper);
   }
+  restored_.OnEvent(frame.stamp);
   Remember(frame, map);
   for (PriorityVehicle& vehicle : vehicles_) StepVehicle(vehicle, frame, map, outputs);
   DropEnded();
@@ -176,7 +177,10 @@ TrustState PriorityPerception::TrustOf(SenderId sender) const {
   if (const Link* link = FindLink(sender)) return link->trust.state();
   const Tombstones::Stone* stone = tombstones_.Find(sender);
   const bool has_penalty = stone != nullptr && stone->penalty.state != TrustState::kNone;
-  return has_penalty ? stone->penalty.state : TrustState::kUnknown;
+  if (has_penalty) return stone->penalty.state;
+  const TrustState restored = restored_.StateOf(sender);
+  const bool is_penalty = restored == TrustState::kSuspect || restored == TrustState::kRevoked;
+  return is_penalty ? restored : TrustState::kUnknown;
 }
 
 std::optional<BiasEstimate> PriorityPerception::BiasOf(SenderId sender) const {

@@ -23,6 +23,7 @@
 #include "daemon/trust/sender_trust.h"
 #include "daemon/trust/shared_place.h"
 #include "daemon/trust/tombstones.h"
+#include "daemon/trust/trust_memory.h"
 #include "daemon/visibility/visibility.h"
 
 namespace v2vouch {
@@ -77,6 +78,12 @@ class PriorityPerception {
   [[nodiscard]] std::optional<BiasEstimate> BiasOf(SenderId sender) const;
   /// Raw sensor-confirmed residuals of the last event, at most one.
   std::vector<BiasResidual> TakeResiduals();
+  /// What of the trust in senders outlives a restart; ages as of `now`. See TrustMemory.
+  [[nodiscard]] std::vector<TrustMemory> TrustToKeep(Timestamp now) const;
+  /// Before the first event: what an earlier run kept.
+  void RestoreTrust(std::vector<TrustMemory> memories) {
+    restored_ = RestoredTrust(std::move(memories));
+  }
   [[nodiscard]] std::size_t vehicle_count() const { return vehicles_.size(); }
   /// Bytes that a copy of this state takes, heap included; what a checkpoint costs.
   [[nodiscard]] std::size_t checkpoint_bytes() const;
@@ -215,6 +222,7 @@ class PriorityPerception {
   PairTable pairs_;
   std::vector<PriorityVehicle> vehicles_;  // By id; id 0 = ended in this step.
   Tombstones tombstones_;
+  RestoredTrust restored_;  // Of senders not heard since the start.
   CommonMode common_;
   std::optional<Timestamp> shifted_;  // When all senders were last off alike.
   PaperList paper_;

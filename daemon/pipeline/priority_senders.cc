@@ -10,7 +10,56 @@ namespace {
 
 constexpr double kTurns_s = 0.5;  // So many seconds' turns may be saved up.
 
+bool IsPenalty(TrustState state) {
+  return state == TrustState::kSuspect || state == TrustState::kRevoked;
+}
+
+void Recall(const TrustMemory& memory, Timestamp now, SenderTrust& trust) {
+  const Timestamp since = now - FromSeconds(memory.since_s);
+  if (IsPenalty(memory.state)) {
+    trust.Inherit({memory.state, memory.suspicions, memory.accusations, since,
+                   now - FromSeconds(memory.finding_s)});
+  } else {
+    trust.InheritRelease(since);
+  }
+}
+
+TrustMemory ToMemory(SenderId sender, const CertificateDigest& certificate, const Penalty& penalty,
+                     Timestamp now) {
+  return {sender,
+          certificate,
+          penalty.state,
+          penalty.suspicions,
+          penalty.accusations,
+          ToSeconds(now - penalty.since),
+          ToSeconds(now - penalty.last_finding)};
+}
+
 }  // namespace
+
+std::vector<TrustMemory> PriorityPerception::TrustToKeep(Timestamp now) const {
+  std::vector<TrustMemory> kept = restored_.Left(now);
+  for (const Tombstones::Stone& stone : tombstones_.stones()) {
+    if (!IsPenalty(stone.penalty.state) || FindLink(stone.sender) != nullptr) continue;
+    kept.push_back(ToMemory(stone.sender, stone.certificate, stone.penalty, now));
+  }
+  for (const Link& link : links_) {
+    if (link.trust.has_penalty()) {
+      kept.push_back(ToMemory(link.sender, link.certificate, link.trust.penalty(), now));
+      continue;
+    }
+    const auto until = link.trust.is_relied_on() ? std::optional(now) : link.trust.released();
+    if (!until) continue;
+    kept.push_back({.sender = link.sender,
+                    .certificate = link.certificate,
+                    .state = TrustState::kCandidate,
+                    .since_s = ToSeconds(now - *until)});
+  }
+  std::erase_if(kept, [&](const TrustMemory& memory) {
+    return !IsPenalty(memory.state) && memory.since_s > settings_->priority.trust.again_s;
+  });
+  return BoundedTrust(std::move(kept));
+}
 
 PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
                                                            const ClaimInOdometry& here,
@@ -50,6 +99,8 @@ PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
     if (stone) {
       link->trust.Inherit(stone->penalty);
       link->place = stone->place;
+    } else if (const auto memory = restored_.TakeFor(claim.sender, claim.certificate, here.stamp)) {
+      Recall(*memory, here.stamp, link->trust);
     }
   }
   link->length_m = claim.length_m;

@@ -75,6 +75,12 @@ class Timeline {
   /// Newest time of any frame or claim.
   [[nodiscard]] Timestamp newest_time() const { return newest_; }
 
+  /// Before the first event: what an earlier run kept of the trust in senders.
+  void RestoreTrust(std::vector<TrustMemory> memories) {
+    priority_.RestoreTrust(std::move(memories));
+    before_->priority = priority_;
+  }
+
   /// Residuals of events that have left the buffer since the last call; they will not change.
   std::vector<BiasResidual> TakeSettled();
   /// Everything up to here is settled.

@@ -86,6 +86,9 @@ class SenderTrust {
   void InheritFrom(const SenderTrust& old) { *this = old; }
   [[nodiscard]] Penalty penalty() const;
   void Inherit(const Penalty& penalty);
+  /// Until when it was relied on, where it has not been blamed since.
+  [[nodiscard]] std::optional<Timestamp> released() const { return released_; }
+  void InheritRelease(Timestamp until) { released_ = until; }
 
   /// Residuals have lost their common ground (the ego moved its own place): start them again.
   void ForgetResiduals() {

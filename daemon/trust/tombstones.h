@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "daemon/base/time.h"
 #include "daemon/data/input.h"
@@ -37,6 +38,8 @@ class Tombstones {
   /// No longer penalised or doubted.
   void Remove(SenderId sender);
   [[nodiscard]] const Stone* Find(SenderId sender) const;
+
+  [[nodiscard]] std::span<const Stone> stones() const { return {stones_.data(), count_}; }
 
   /// The stone a newcomer inherits, which is taken away; nullopt: none.
   /// @param first_heard when the newcomer was heard for the first time ever.
