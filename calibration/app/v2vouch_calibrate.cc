@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "calibration/app/calibration_run.h"
+#include "daemon/io/lcm_url.h"
+#include "daemon/io/output_file.h"
+#include "daemon/io/std_streams.h"
 #include "daemon/program/command_line.h"
 
 namespace v2vouch {
@@ -59,7 +62,8 @@ int Run(int argc, char** argv) {
   app.add_option("--out", out, "calibration file to write, or to replace as a whole")->required();
   app.add_option("--report", report, "folder for a page of residuals, index.html");
   app.add_flag("--json", as_json, "figures as one line of JSON");
-  app.add_option("-l,--lcm-url", lcm_url, "taken like every program's; no socket is opened");
+  app.add_option("-l,--lcm-url", lcm_url, "taken like every program's; no socket is opened")
+      ->check(CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-calibrate", argc, argv))
     return *code;
   const auto complain = [](const std::string& what) {
@@ -73,6 +77,12 @@ int Run(int argc, char** argv) {
     return kUsage;
   }
   std::string error;
+  std::vector<std::string> inputs = logs;
+  inputs.push_back(config_path);
+  if (LookAtOutput(out, inputs, error) == OutputPlace::kRefused) {  // Before minutes of work.
+    complain(error);
+    return kFailed;
+  }
   const auto start = std::chrono::steady_clock::now();
   const auto run = Calibrate(logs, config, error, ShowProgress);
   const double solve_s =
@@ -93,7 +103,7 @@ int Run(int argc, char** argv) {
     complain("not accepted; " + out + " is as it was");
     return kFailed;
   }
-  if (!SaveCalibration(out, run->file, error)) {
+  if (!SaveCalibration(out, run->file, error, inputs)) {
     complain(error);
     return kFailed;
   }
@@ -109,4 +119,7 @@ int Run(int argc, char** argv) {
 }  // namespace
 }  // namespace v2vouch
 
-int main(int argc, char** argv) { return v2vouch::Run(argc, argv); }
+int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-calibrate");
+  return v2vouch::Run(argc, argv);
+}

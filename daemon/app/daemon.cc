@@ -4,17 +4,21 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "daemon/app/foreign_outputs.h"
 #include "daemon/app/latency_meter.h"
 #include "daemon/app/message_queue.h"
 #include "daemon/app/receiver.h"
+#include "daemon/app/trust_keeper.h"
 #include "daemon/assembly/calibration_in_force.h"
 #include "daemon/assembly/engine.h"
 #include "daemon/base/angle.h"
+#include "daemon/io/lcm_url.h"
 #include "daemon/io/socket_figures.h"
 
 namespace v2vouch {
@@ -40,13 +44,22 @@ class Daemon {
         engine_(config),
         queue_(static_cast<std::size_t>(config.lcm.own_queue),
                static_cast<std::size_t>(config.lcm.bsm_queue)),
-        detect_(engine_.decoder(), detector, queue_) {
+        detect_(engine_.decoder(), detector, queue_),
+        trust_(config.state, config.perception.vehicle.id) {
     const bool has_own_v2v_bus = !config.lcm.v2v_url.empty();
+    ports_ = {LcmUdpPort(EffectiveLcmUrl(config.lcm.url))};
+    if (has_own_v2v_bus) ports_.push_back(LcmUdpPort(config.lcm.v2v_url));
     std::vector<Receiver::Subscription> own;
     std::vector<Receiver::Subscription> v2v;
     for (const wire::InputChannel& channel : engine_.channels()) {
       const bool is_bsm = channel.kind == wire::InputKind::kBsm;
       (is_bsm && has_own_v2v_bus ? v2v : own).push_back({channel.name, SinkOf(channel)});
+    }
+    // Never an input: heard only to notice that somebody else sends them too.
+    for (const std::string* output : WatchedOutputs()) {
+      own.push_back({*output, [this](std::span<const std::uint8_t> bytes, std::size_t, Timestamp) {
+                       foreign_.Heard(bytes);
+                     }});
     }
     own_bus_ = std::make_unique<Receiver>(config.lcm.url, std::move(own));
     if (has_own_v2v_bus) {
@@ -55,6 +68,7 @@ class Daemon {
   }
 
   DaemonSummary Run(const std::function<bool()>& must_stop) {
+    engine_.RestoreTrust(trust_.Load());
     while (!must_stop() && !own_bus_->is_open()) {
       ReportWaiting();
       std::this_thread::sleep_for(kPopTimeout);
@@ -68,6 +82,7 @@ class Daemon {
       if (const auto arrival = queue_.Pop(kPopTimeout)) Take(*arrival);
       OnTime(Clock::now());
     }
+    trust_.Finish(engine_.TrustToKeep());
     return Summary();
   }
 
@@ -140,6 +155,7 @@ class Daemon {
       engine_.PublishStatus(outbox_);
       Publish();
     }
+    if (trust_.IsDue(now)) trust_.Keep(engine_.TrustToKeep(), now);
     if (now - last_housekeeping_ >= kHousekeeping) {
       last_housekeeping_ = now;
       RefreshFigures();
@@ -151,20 +167,43 @@ class Daemon {
 
   void Publish() {
     for (const Outbox::Message& message : outbox_.messages()) {
+      const bool is_watched = std::ranges::any_of(
+          WatchedOutputs(), [&](const std::string* output) { return message.channel == *output; });
+      if (is_watched) foreign_.Sent(message.bytes);
       own_bus_->Publish(message.channel, message.bytes);
       if (message.channel == config_.lcm.channels.status) last_status_ = Clock::now();
     }
   }
 
+  // One of frames, one of time: enough to notice a second daemon in whatever state it is.
+  [[nodiscard]] std::array<const std::string*, 2> WatchedOutputs() const {
+    return {&config_.lcm.channels.tracks_local, &config_.lcm.channels.status};
+  }
+
+  // What the core cannot know. Each holds for the second in which it was seen.
+  std::vector<Notice> Notices() {
+    std::vector<Notice> notices;
+    const auto note = [&](NoticeKind kind, std::int64_t total, std::int64_t& before) {
+      if (total > before) {
+        notices.push_back({.kind = kind, .value = static_cast<double>(total - before)});
+      }
+      before = total;
+    };
+    note(NoticeKind::kForeignOutputs, foreign_.count(), foreign_before_);
+    note(NoticeKind::kRadioFlood, queue_.bsm_drops(), bsm_drops_before_);
+    return notices;
+  }
+
   void RefreshFigures() {
-    const SocketFigures sockets = ReadSocketFigures();
+    const SocketFigures sockets = ReadSocketFigures(ports_);
     engine_.SetShellFigures({.queue_drops_own = queue_.own_drops(),
                              .queue_drops_bsm = queue_.bsm_drops(),
                              .images_replaced = detect_.replaced(),
                              .kernel_drops = sockets.kernel_drops,
                              .receive_buffer_bytes = sockets.receive_buffer_bytes,
                              .latencies = {queue_wait_.Report(), step_.Report(),
-                                           input_to_list_.Report(), image_to_boxes_.Report()}});
+                                           input_to_list_.Report(), image_to_boxes_.Report()},
+                             .notices = Notices()});
   }
 
   // One line per reason and second at most.
@@ -254,6 +293,7 @@ class Daemon {
   Outbox outbox_;
   MessageQueue queue_;
   DetectThread detect_;
+  TrustKeeper trust_;
   LatencyMeter queue_wait_{"queue_wait"};
   LatencyMeter step_{"step"};
   LatencyMeter input_to_list_{"input_to_list"};  // From the network: its boxes to the list.
@@ -262,6 +302,10 @@ class Daemon {
   ReasonCounts logged_{};
   std::int64_t logged_drops_ = 0;
   int reported_failures_ = 0;
+  ForeignOutputs foreign_;
+  std::int64_t foreign_before_ = 0;
+  std::int64_t bsm_drops_before_ = 0;
+  std::vector<int> ports_;  // That we receive on.
   std::vector<bool> moved_;
   int stale_round_ = 0;
   Clock::time_point last_list_{};

@@ -3,13 +3,16 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <csignal>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 
 #include "daemon/app/daemon.h"
+#include "daemon/app/stderr_relay.h"
 #include "daemon/detection/network_detector.h"
-#include "daemon/io/lcm_bus.h"
+#include "daemon/io/lcm_url.h"
+#include "daemon/io/std_streams.h"
+#include "daemon/io/stop_signal.h"
 #include "daemon/program/command_line.h"
 
 namespace {
@@ -42,10 +45,6 @@ std::unique_ptr<v2vouch::ObjectDetector> LoadDetector(const v2vouch::DaemonConfi
   return nullptr;
 }
 
-volatile std::sig_atomic_t stop_requested = 0;
-
-void RequestStop(int) { stop_requested = 1; }
-
 void PrintSummary(const v2vouch::DaemonSummary& summary) {
   spdlog::info(
       "event=stopped accepted={} lists={} stale_lists={} queue_drops_own={} "
@@ -62,9 +61,11 @@ void PrintSummary(const v2vouch::DaemonSummary& summary) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouchd");
   std::string config_path;
   std::string url;
   std::string v2v_url;
+  std::string state_file;
   bool prints_config = false;
   CLI::App app("Tells the car which vehicles are around it, and which it may rely on.");
   app.footer(kExamples);
@@ -73,6 +74,10 @@ int main(int argc, char** argv) {
                  "LCM URL (default: lcm.url of the configuration, else "
                  "LCM_DEFAULT_URL)");
   app.add_option("--v2v-lcm-url", v2v_url, "LCM URL of BSMs, on a port of its own");
+  app.add_option("--state", state_file,
+                 "File that keeps senders' penalties over a restart (default: state.file of the "
+                 "configuration, else trust.state in STATE_DIRECTORY, else none)");
+  auto* no_state = app.add_flag("--no-state", "Neither read nor write such a file");
   app.add_flag("--print-config", prints_config, "Print the effective configuration and end");
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouchd", argc, argv)) return *code;
 
@@ -82,9 +87,15 @@ int main(int argc, char** argv) {
   v2vouch::LoadDaemonConfig(config_path, config, problems, &notes);
   if (!url.empty()) config.lcm.url = url;
   if (!v2v_url.empty()) config.lcm.v2v_url = v2v_url;
-  for (const std::string& given : {config.lcm.url, config.lcm.v2v_url}) {
-    if (!v2vouch::IsLcmUrl(given))
-      problems.push_back("LCM URL \"" + given + "\": unknown provider");
+  if (!state_file.empty()) config.state.file = state_file;
+  if (const char* folder = std::getenv("STATE_DIRECTORY"); folder && config.state.file.empty()) {
+    const std::string folders = folder;  // systemd may name several, with a colon between.
+    config.state.file = folders.substr(0, folders.find(':')) + "/trust.state";
+  }
+  if (no_state->count() > 0) config.state.enabled = false;
+  for (const std::string& given : {v2vouch::EffectiveLcmUrl(config.lcm.url), config.lcm.v2v_url}) {
+    const auto faults = v2vouch::LcmUrlProblems(given);
+    problems.insert(problems.end(), faults.begin(), faults.end());
   }
   std::unique_ptr<v2vouch::ObjectDetector> detector;
   if (problems.empty() && !prints_config) detector = LoadDetector(config, problems);
@@ -97,6 +108,7 @@ int main(int argc, char** argv) {
     return 0;
   }
 
+  const v2vouch::StderrRelay relay;  // From here on perception runs: no line of log holds it up.
   spdlog::set_default_logger(spdlog::stderr_logger_mt("v2vouchd"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e level=%l %v");
   if (detector) {
@@ -106,10 +118,9 @@ int main(int argc, char** argv) {
   } else {
     spdlog::info("event=no_network hint=\"boxes come from smart cameras\"");
   }
-  std::signal(SIGINT, RequestStop);
-  std::signal(SIGTERM, RequestStop);
+  v2vouch::HandleStopSignals();
   try {
-    PrintSummary(v2vouch::RunDaemon(config, detector.get(), [] { return stop_requested != 0; }));
+    PrintSummary(v2vouch::RunDaemon(config, detector.get(), v2vouch::IsStopAsked));
   } catch (const std::exception& error) {
     spdlog::critical("event=failed what=\"{}\"", error.what());
     return 1;

@@ -181,6 +181,7 @@ void Engine::PublishStatus(Outbox& outbox) {
   std::vector<Notice> notices;
   perception_.CollectNotices(notices);
   watch_.CollectNotices(notices);
+  notices.insert(notices.end(), figures_.notices.begin(), figures_.notices.end());
   notices_.Update(notices, status_.stamp);
   status_.notices = notices_.in_force();
   status_.digest_inputs = watch_.accepted();

@@ -52,6 +52,7 @@ struct ShellFigures {
   std::int64_t kernel_drops = -1;
   std::int64_t receive_buffer_bytes = -1;
   std::vector<wire::StageLatency> latencies;
+  std::vector<Notice> notices;
 };
 
 /// Bytes in, bytes out: decode, perception, encode, with every refusal counted. The daemon and the

@@ -25,6 +25,11 @@ constexpr std::array<Words, kNoticeKindCount> kWords = {{
     {"speed_suspect",
      "EGO_MOTION speed disagrees with radar Doppler; check unit, sign and radar mounting"},
     {"yaw_rate_suspect", "EGO_MOTION yaw rate disagrees with radar Doppler; is the sensor frozen?"},
+    {"foreign_outputs",
+     "a second daemon on this bus, or a player of a recorded log that holds lists: whoever reads "
+     "them gets both"},
+    {"radio_flood",
+     "more BSMs come than can be taken in; the oldest are dropped, own sensors are not"},
 }};
 
 static_assert(!kWords.back().name.empty(), "one entry per kind");

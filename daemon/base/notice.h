@@ -25,6 +25,8 @@ enum class NoticeKind : std::uint8_t {
   kSpeedFrozen,      ///< The reported speed does not change any more: Doppler's is used [m/s].
   kSpeedSuspect,     ///< Doppler of the standing world shows another speed; not corrected [m/s].
   kYawRateSuspect,   ///< Doppler of the standing world shows another yaw rate, by [deg/s].
+  kForeignOutputs,   ///< Somebody else publishes on our output channels [messages in a second].
+  kRadioFlood,       ///< BSMs dropped by our full queue [in a second].
   kCount
 };
 

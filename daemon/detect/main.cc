@@ -13,6 +13,8 @@
 #include "daemon/detect/detect_report.h"
 #include "daemon/detect/picture_file.h"
 #include "daemon/detection/network_detector.h"
+#include "daemon/io/lcm_url.h"
+#include "daemon/io/std_streams.h"
 #include "daemon/program/command_line.h"
 
 namespace {
@@ -117,8 +119,8 @@ int LookAtFiles(const Options& options, NetworkDetector& detector) {
     if (!options.draw_folder.empty()) {
       const fs::path file =
           fs::path(options.draw_folder) / fs::path(image).filename().replace_extension(".png");
-      if (!WriteAnnotated(file.string(), bgr, report.boxes)) {
-        return Complain(file.string() + ": cannot be written", kFailed);
+      if (!WriteAnnotated(file.string(), bgr, report.boxes, images, error)) {
+        return Complain(error, kFailed);
       }
     }
     reports.push_back(std::move(report));
@@ -209,6 +211,7 @@ int Run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  GuardStandardStreams("v2vouch-detect");
   Options options;
   std::string lcm_url;
   CLI::App app("Runs the camera network on picture files, or on the pictures of a log.");
@@ -228,7 +231,8 @@ int main(int argc, char** argv) {
   app.add_option("--log", options.log, "LCM log whose pictures are looked at");
   app.add_option("--out", options.out, "With --log: the log to write");
   app.add_flag("--json", options.as_json, "Print as JSON");
-  app.add_option("-l,--lcm-url", lcm_url, "Taken like every program's; no socket is opened");
+  app.add_option("-l,--lcm-url", lcm_url, "Taken like every program's; no socket is opened")
+      ->check(CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-detect", argc, argv)) return *code;
   try {
     return Run(options);

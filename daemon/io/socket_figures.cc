@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,9 +16,15 @@
 namespace v2vouch {
 namespace {
 
-// Inode -> drops, of every UDP socket of this network namespace that has a multicast group's or any
-// peer's datagrams to take, i.e. whose remote port is 0.
-std::map<std::uint64_t, std::int64_t> DropsByInode() {
+// Inode -> drops, of every UDP socket of this network namespace that takes any peer's datagrams
+// (its remote port is 0) on one of the ports.
+std::map<std::uint64_t, std::int64_t> DropsByInode(std::span<const int> ports) {
+  const auto is_ours = [&](const std::string& address) {  // ADDRESS:PORT, hexadecimal.
+    const auto colon = address.rfind(':');
+    if (colon == std::string::npos) return false;
+    const long port = std::strtol(address.c_str() + colon + 1, nullptr, 16);
+    return std::ranges::find(ports, static_cast<int>(port)) != ports.end();
+  };
   std::map<std::uint64_t, std::int64_t> drops;
   std::ifstream table("/proc/net/udp");
   std::string line;
@@ -30,16 +37,16 @@ std::map<std::uint64_t, std::int64_t> DropsByInode() {
     std::int64_t dropped = 0;
     words >> slot >> local >> remote >> state >> queues >> timer >> retransmit >> uid >> timeout >>
         inode >> references >> pointer >> dropped;
-    if (words && remote.ends_with(":0000")) drops[inode] = dropped;
+    if (words && remote.ends_with(":0000") && is_ours(local)) drops[inode] = dropped;
   }
   return drops;
 }
 
 }  // namespace
 
-SocketFigures ReadSocketFigures() {
+SocketFigures ReadSocketFigures(std::span<const int> ports) {
   SocketFigures figures;
-  const auto drops = DropsByInode();
+  const auto drops = DropsByInode(ports);
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", error)) {
     const int fd = std::atoi(entry.path().filename().c_str());

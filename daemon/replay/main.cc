@@ -2,10 +2,12 @@
 // v2vouch-replay: a log through the same core as the daemon's.
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 
+#include "daemon/io/lcm_url.h"
+#include "daemon/io/std_streams.h"
+#include "daemon/io/stop_signal.h"
 #include "daemon/program/command_line.h"
 #include "daemon/replay/replay.h"
 
@@ -24,23 +26,21 @@ input; v2vouch-detect --log puts that into a log of pictures.
 Exit codes: 0 done; 1 the log could not be read or written, the run was stopped, or it made no list
 (nothing on this vehicle's channels, nothing accepted, no ego motion); 2 usage or configuration.)";
 
-volatile std::sig_atomic_t stop_requested = 0;
-
-void RequestStop(int) { stop_requested = 1; }
-
 bool ShowProgress(double share) {
   static const bool is_terminal = isatty(STDERR_FILENO) == 1;
   if (is_terminal) std::fprintf(stderr, "\rreplaying %3.0f %%", 100.0 * share);
-  return stop_requested == 0;
+  return !v2vouch::IsStopAsked();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-replay");
   std::string in;
   std::string out;
   std::string config_path;
   std::string lcm_url;
+  std::string state_file;
   bool wants_json = false;
   CLI::App app(
       "Runs a recorded log through the perception core, as fast as it can, without sockets.");
@@ -48,22 +48,27 @@ int main(int argc, char** argv) {
   app.add_option("IN", in, "LCM log to read")->required();
   app.add_option("--out", out, "LCM log to write")->required();
   app.add_option("--config", config_path, "Vehicle description (default: the shipped vehicle)");
+  app.add_option("--state", state_file,
+                 "Senders' penalties that a daemon kept; a copy of its file, not written")
+      ->check(CLI::ExistingFile);
   app.add_flag("--json", wants_json, "Print the figures as JSON");
-  app.add_option("-l,--lcm-url", lcm_url, "Taken like every program's; replay opens no socket");
+  app.add_option("-l,--lcm-url", lcm_url, "Taken like every program's; replay opens no socket")
+      ->check(v2vouch::CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-replay", argc, argv)) return *code;
 
   v2vouch::DaemonConfig config;
   std::vector<std::string> problems;
   std::vector<std::string> notes;
-  if (!v2vouch::LoadDaemonConfig(config_path, config, problems, &notes)) {
+  const bool is_loaded = v2vouch::LoadDaemonConfig(config_path, config, problems, &notes);
+  config.state.file = state_file;  // That of the configuration is the daemon's.
+  if (!is_loaded) {
     for (const std::string& problem : problems) std::cerr << problem << '\n';
     return 2;
   }
 
   for (const std::string& note : notes) std::cerr << "v2vouch-replay: note: " << note << '\n';
 
-  std::signal(SIGINT, RequestStop);
-  std::signal(SIGTERM, RequestStop);
+  v2vouch::HandleStopSignals();
   v2vouch::ReplayResult result;
   std::string error;
   const bool is_done = v2vouch::Replay(in, out, config, ShowProgress, result, error);

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "daemon/assembly/engine.h"
+#include "daemon/assembly/trust_file.h"
 #include "daemon/io/event_log.h"
 
 namespace v2vouch {
@@ -70,6 +71,26 @@ class UnseenPictures {
   std::vector<std::int64_t> balance_;
 };
 
+void Note(const std::string& channel) {
+    if (const auto found = pictures_.find(channel); found != pictures_.end()) {
+      ++balance_[found->second];
+    } else if (const auto seen = detections_.find(channel); seen != detections_.end()) {
+      --balance_[seen->second];
+    }
+  }
+  [[nodiscard]] std::int64_t count() const {
+    std::int64_t sum = 0;
+    for (const std::int64_t each : balance_) sum += std::max<std::int64_t>(0, each);
+    return sum;
+  }
+
+ private:
+  std::map<std::string, std::size_t> pictures_;
+  std::map<std::string, std::size_t> detections_;
+  std::size_t cameras_ = 0;
+  std::vector<std::int64_t> balance_;
+};
+
 bool IsSameFile(const std::string& a, const std::string& b) {
   std::error_code ignored;
   return std::filesystem::equivalent(a, b, ignored);
@@ -105,11 +126,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
   if (!reader) return false;
   std::unique_ptr<LogWriter> writer;
   if (!out.empty()) {
-    if (IsSameFile(in, out)) {
-      error = out + ": is the log that is being read";
-      return false;
-    }
-    writer = LogWriter::Create(out, error);
+    writer = LogWriter::Create(out, error, std::span(&in, 1));
     if (!writer) return false;
   }
 
@@ -124,6 +141,14 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
   while (reader->Next(event)) {
     if (result.events == 0) {
       first = last = event.received;
+      if (!config.state.file.empty()) {
+        // As old as it was when the log began: the same log gives the same bytes on any day.
+        LoadedTrust trust = LoadTrust(config.state.file, config.perception.vehicle.id,
+                                      event.received, config.state.max_age_s);
+        error = trust.problem;
+        if (!error.empty()) return false;
+        engine.RestoreTrust(std::move(trust.senders));
+      }
       engine.Start(outbox);
       WriteAll(outbox, event.received, writer.get());
     }
@@ -134,6 +159,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
       error = "stopped";
       return false;
     }
+    if (writer && !writer->is_good()) break;
     unseen.Note(event.channel);
     if (IsOurOutput(event.channel, config)) {
       ++result.old_outputs;

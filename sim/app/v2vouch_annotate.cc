@@ -7,6 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "daemon/io/durable_file.h"
+#include "daemon/io/lcm_url.h"
+#include "daemon/io/std_streams.h"
 #include "daemon/program/command_line.h"
 #include "sim/annotation/annotate_log.h"
 
@@ -42,7 +45,10 @@ int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folde
     char name[32];
     std::snprintf(name, sizeof(name), "%06lld.png", static_cast<long long>(result.pictures - 1));
     const std::string path = (std::filesystem::path(folder) / name).string();
-    if (!cv::imwrite(path, picture)) error = path + ": cannot be written";
+    std::vector<std::uint8_t> png;
+    cv::imencode(".png", picture, png);
+    v2vouch::ReplaceFile(path, {reinterpret_cast<const char*>(png.data()), png.size()}, error,
+                         std::span(&request.log, 1));
     if (is_terminal)
       std::fprintf(stderr, "\r%lld pictures", static_cast<long long>(result.pictures));
     return error.empty();
@@ -82,6 +88,7 @@ int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folde
 }  // namespace
 
 int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-annotate");
   v2vouch::sim::AnnotationRequest request;
   std::string folder;
   std::string lcm_url;
@@ -96,7 +103,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_flag("--json", as_json, "Figures as one line of JSON");
-  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network");
+  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network")
+      ->check(v2vouch::CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-annotate", argc, argv)) return *code;
   try {
     return Run(request, folder, as_json);

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "daemon/io/lcm_url.h"
+#include "daemon/io/std_streams.h"
 #include "daemon/program/command_line.h"
 #include "sim/bench/bench.h"
 
@@ -89,6 +91,7 @@ void PrintTable(const BenchFigures& f) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-bench-tracker");
   CLI::App app("Runs the tracker core over recorded or generated detections: accuracy and time.");
   app.footer(kExamples);
   std::string path, out_path, seeds = "1", lcm_url;
@@ -141,7 +144,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   app.add_flag("--json", as_json, "Figures as JSON on standard output");
-  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; needs no network");
+  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; needs no network")
+      ->check(v2vouch::CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-bench-tracker", argc, argv)) {
     return *code;
   }
@@ -177,7 +181,7 @@ int main(int argc, char** argv) {
     }
     if (rotate_rad != 0.0) recording = Rotated(recording, rotate_rad);
     if (!out_path.empty()) {
-      if (WriteRecording(recording, out_path, error)) return kGood;
+      if (WriteRecording(recording, out_path, error, std::span(&path, 1))) return kGood;
       std::fprintf(stderr, "v2vouch-bench-tracker: %s\n", error.c_str());
       return kFailed;
     }

@@ -10,6 +10,8 @@
 #include <set>
 
 #include "daemon/base/did_you_mean.h"
+#include "daemon/io/lcm_url.h"
+#include "daemon/io/std_streams.h"
 #include "daemon/program/command_line.h"
 #include "sim/app/shipped_files.h"
 #include "sim/campaign/report.h"
@@ -289,6 +291,7 @@ int Report(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-campaign");
   CLI::App app(
       "Tries attacks and honest conditions over scenarios, densities and seeds, and scores "
       "how the daemon fares.");
@@ -329,7 +332,8 @@ int main(int argc, char** argv) {
   app.add_flag("--keep", options.keep, "Keep the log files, in OUT/tmp");
   app.add_option("--report", options.report, "Folder for index.html (made if absent)");
   app.add_flag("--json", options.as_json, "Figures as JSON on standard output");
-  app.add_option("-l,--lcm-url", options.lcm_url, "Accepted for uniformity; nothing goes over LCM");
+  app.add_option("-l,--lcm-url", options.lcm_url, "Accepted for uniformity; nothing goes over LCM")
+      ->check(v2vouch::CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-campaign", argc, argv)) return *code;
   if (options.out.empty() == options.merge.empty()) {
     Complain("give --out DIR (or --merge DIR...)");

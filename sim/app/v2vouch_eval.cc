@@ -6,6 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "daemon/io/lcm_url.h"
+#include "daemon/io/std_streams.h"
 #include "daemon/program/command_line.h"
 #include "sim/annotation/annotate_log.h"
 #include "sim/evaluation/evaluation.h"
@@ -100,6 +102,7 @@ int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-eval");
   using namespace v2vouch::evaluation;
   CLI::App app(
       "Judges a recorded run against its truth: GOSPA with all parts, bound, gates, report.");
@@ -124,7 +127,8 @@ int main(int argc, char** argv) {
   app.add_flag("--message-checks", message_checks,
                "With --spoof: message-only checks of the published kind on the same messages")
       ->needs(of_spoof);
-  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network");
+  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network")
+      ->check(v2vouch::CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-eval", argc, argv)) return *code;
 
   if (spoof) return JudgeLies(log_path, message_checks, as_json);

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "daemon/base/did_you_mean.h"
+#include "daemon/io/durable_file.h"
+#include "daemon/io/std_streams.h"
 #include "daemon/program/command_line.h"
 #include "sim/app/import_kitti.h"
 #include "sim/app/import_output.h"
@@ -70,14 +72,12 @@ int ImportComma2k19(const std::string& folder, const std::string& out,
   if (events.empty()) return ImportFailed(folder + ": " + error);
 
   Say("writing the log");
-  return WriteImportedLog(out, events, {}, as_json);
-}
-
-bool WriteFile(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << text;
-  file.close();
-  return file.good();
+  std::vector<std::string> inputs;
+  std::error_code failed;
+  for (const auto& file : std::filesystem::directory_iterator(folder, failed)) {
+    inputs.push_back(file.path().string());
+  }
+  return WriteImportedLog(out, inputs, events, {}, as_json);
 }
 
 int ImportSumo(const std::string& path, const std::string& out, SumoOptions options, bool as_json) {
@@ -99,8 +99,8 @@ int ImportSumo(const std::string& path, const std::string& out, SumoOptions opti
   if (failed) return ImportFailed(out + ": cannot be made: " + failed.message());
   for (const auto& [name, text] : {std::pair{"scenario.yaml", &scenario.yaml},
                                    std::pair{"trajectories.csv", &scenario.trajectories_csv}}) {
-    if (!WriteFile(folder / name, *text)) {
-      return ImportFailed((folder / name).string() + ": cannot be written");
+    if (!ReplaceFile((folder / name).string(), *text, error, std::span(&path, 1))) {
+      return ImportFailed(error);
     }
   }
   TellFigures({{"scenario", (folder / "scenario.yaml").string()},
@@ -208,6 +208,7 @@ int Run(int argc, char** argv) {
 }  // namespace v2vouch::sim
 
 int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-import");
   try {
     return v2vouch::sim::Run(argc, argv);
   } catch (const std::exception& error) {  // Out of memory, a disk that vanished.

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/io/lcm_url.h"
+#include "daemon/io/std_streams.h"
 #include "daemon/program/command_line.h"
 #include "sim/app/shipped_files.h"
 #include "sim/app/v2vouch_sim_run.h"
@@ -75,6 +77,7 @@ int List(bool as_json) {
 }  // namespace v2vouch::sim
 
 int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-sim");
   using namespace v2vouch::sim;
   CLI::App app("Simulates a drive: radar, camera, ego motion, GNSS, BSMs and truth of a scenario.",
                "v2vouch-sim");
@@ -94,7 +97,8 @@ int main(int argc, char** argv) {
   run->add_option("--seed", options.seed, "Seed of all random numbers")->capture_default_str();
   auto* out = run->add_option("--out", options.out, "Log file to write, at full speed");
   run->add_flag("--live", options.live, "Send over LCM in real time")->excludes(out);
-  run->add_option("-l,--lcm-url", options.lcm_url, "LCM bus for --live [LCM_DEFAULT_URL]");
+  run->add_option("-l,--lcm-url", options.lcm_url, "LCM bus for --live [LCM_DEFAULT_URL]")
+      ->check(v2vouch::CheckLcmUrl);
   run->add_option("--duration", options.duration_s, "Stop after this many seconds of the scenario")
       ->check(CLI::PositiveNumber);
   run->add_option("--sensors", sensors, "Instead of the scenario's own sensors.mode")
@@ -108,6 +112,12 @@ int main(int argc, char** argv) {
   if (*list) return List(as_json);
   if (options.out.empty() && !options.live) {
     std::fprintf(stderr, "v2vouch-sim: one of --out LOG.lcm and --live is needed\n");
+    return kUsage;
+  }
+  const std::string url_problem =
+      options.live ? v2vouch::CheckLcmUrl(v2vouch::EffectiveLcmUrl(options.lcm_url)) : "";
+  if (!url_problem.empty()) {
+    std::fprintf(stderr, "v2vouch-sim: %s\n", url_problem.c_str());
     return kUsage;
   }
   std::string problem;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <lcm/lcm-cpp.hpp>
 #include <map>
@@ -15,6 +14,7 @@
 
 #include "daemon/config/yaml_reader.h"
 #include "daemon/io/event_log.h"
+#include "daemon/io/stop_signal.h"
 #include "sim/wire/simulation.h"
 #include "sim/world/overlay.h"
 #include "sim/world/world.h"
@@ -24,8 +24,6 @@ namespace {
 
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
-
-volatile std::sig_atomic_t stop_asked = 0;
 
 void Complain(const std::string& what) { std::fprintf(stderr, "v2vouch-sim: %s\n", what.c_str()); }
 
@@ -74,7 +72,7 @@ class LogSink : public Sink {
   explicit LogSink(std::unique_ptr<LogWriter> writer) : writer_(std::move(writer)) {}
   bool Take(const SimEvent& event) override {
     writer_->Write(event.arrival, event.channel, event.bytes);
-    return true;
+    return writer_->is_good();
   }
   bool Finish(std::string& error) override { return writer_->Close(error); }
 
@@ -95,7 +93,7 @@ class LiveSink : public Sink {
       begin_ = std::chrono::steady_clock::now();
     }
     const auto due = begin_ + (event.arrival - first_);
-    while (stop_asked == 0) {  // In short naps, so that Ctrl-C is heard at once.
+    while (!IsStopAsked()) {  // In short naps, so that Ctrl-C is heard at once.
       const auto left = due - std::chrono::steady_clock::now();
       if (left <= std::chrono::steady_clock::duration::zero()) break;
       std::this_thread::sleep_for(
@@ -115,7 +113,9 @@ class LiveSink : public Sink {
 
 std::unique_ptr<Sink> OpenSink(const RunOptions& options, std::string& error) {
   if (!options.live) {
-    auto writer = LogWriter::Create(options.out, error);
+    std::vector<std::string> inputs = options.overlays;
+    inputs.push_back(options.scenario);
+    auto writer = LogWriter::Create(options.out, error, inputs);
     return writer ? std::make_unique<LogSink>(std::move(writer)) : nullptr;
   }
   auto live = std::make_unique<LiveSink>(options.lcm_url);
@@ -143,8 +143,7 @@ int Run(const RunOptions& options) {
     Complain(error);
     return kFailed;
   }
-  std::signal(SIGINT, [](int) { stop_asked = 1; });
-  std::signal(SIGTERM, [](int) { stop_asked = 1; });
+  HandleStopSignals();
 
   const auto begin = std::chrono::steady_clock::now();
   const bool shows_progress = isatty(STDERR_FILENO) != 0;
@@ -153,13 +152,14 @@ int Run(const RunOptions& options) {
   Simulation simulation(*world, options.seed);
   for (const std::string& note : simulation.notes()) Complain(note);
   std::vector<SimEvent> events;
-  for (bool more = true; more && stop_asked == 0;) {
+  for (bool more = true; more && !IsStopAsked();) {
     more = simulation.Step(events);
     for (const SimEvent& event : events) {
-      if (stop_asked != 0) break;
+      if (IsStopAsked()) break;
       if (!sink->Take(event)) ++unsent;
       ++counts[event.channel];
     }
+    if (!options.live && unsent > 0) break;  // The disk is full: Finish() says so.
     if (shows_progress) {
       std::fprintf(stderr, "\r%s: %3.0f %% of %.0f s ", scenario.name.c_str(),
                    100.0 * simulation.progress(), scenario.duration_s);
@@ -184,7 +184,7 @@ int Run(const RunOptions& options) {
     }
   }
   if (!finished) Complain(error);
-  if (unsent > 0) Complain(std::to_string(unsent) + " messages could not be sent");
+  if (options.live && unsent > 0) Complain(std::to_string(unsent) + " messages could not be sent");
   return finished && unsent == 0 ? 0 : kFailed;
 }
 

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// v2vouchd as a process among others: where its words go, who else speaks, what outlives it.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include "daemon/assembly/engine.h"
+#include "daemon/assembly/trust_file.h"
+#include "daemon/io/lcm_bus.h"
+#include "daemon/wire/codec.h"
+#include "tests/integration/program.h"
+#include "tests/support/synthetic_drive.h"
+#include "tests/support/wire_drive.h"
+#include "v2vouch/daemon_status_t.hpp"
+
+namespace v2vouch {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using testing::Eventually;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::Program;
+using testing::WireMessage;
+
+std::string TextOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Hears the daemon's status on a thread of its own.
+class StatusListener {
+ public:
+  StatusListener() : bus_(LcmBus::Open("")) {
+    bus_->Subscribe("V2VOUCH_STATUS",
+                    [this](std::span<const std::uint8_t> bytes, std::size_t, Timestamp) {
+                      if (auto status = wire::Decode<daemon_status_t>(bytes)) {
+                        const std::lock_guard lock(mutex_);
+                        newest_ = *status;
+                        ++count_;
+                      }
+                    });
+    thread_ = std::thread([this] {
+      while (!is_over_) bus_->Handle(20);
+    });
+  }
+  ~StatusListener() {
+    is_over_ = true;
+    thread_.join();
+  }
+  LcmBus& bus() { return *bus_; }
+  [[nodiscard]] daemon_status_t newest() {
+    const std::lock_guard lock(mutex_);
+    return newest_;
+  }
+  [[nodiscard]] int count() {
+    const std::lock_guard lock(mutex_);
+    return count_;
+  }
+
+ private:
+  std::unique_ptr<LcmBus> bus_;
+  std::mutex mutex_;
+  daemon_status_t newest_{};
+  int count_ = 0;
+  std::atomic<bool> is_over_ = false;
+  std::thread thread_;
+};
+
+class LiveProcess : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::getenv("V2VOUCH_PRIVATE_LCM") == nullptr || std::getenv("V2VOUCH_BIN") == nullptr) {
+      GTEST_SKIP() << "SKIPPED: not inside scripts/with_private_lcm";
+    }
+    daemon_ = std::string(std::getenv("V2VOUCH_BIN")) + "/v2vouchd";
+    std::string pattern = (fs::temp_directory_path() / "live_process_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  void TearDown() override {
+    if (!folder_.empty()) fs::remove_all(folder_);
+  }
+  [[nodiscard]] std::string Path(const std::string& name) const { return folder_ / name; }
+
+  // The daemon as a shell's user starts it: `redirections` behind its name.
+  [[nodiscard]] std::unique_ptr<Program> Start(const std::string& redirections) const {
+    return std::make_unique<Program>(
+        std::vector<std::string>{
+            "/bin/bash", "-c",
+            "cd " + folder_.string() + " && exec " + daemon_ + " " + redirections},
+        Path("words.txt"));
+  }
+
+  std::string daemon_;
+  fs::path folder_;
+};
+
+std::vector<WireMessage> DriveMessages(double duration_s) {
+  testing::SyntheticDrive drive;
+  drive.duration_s = duration_s;
+  drive.cars.push_back({.x_m = 30.0, .y_m = 0.0, .speed_mps = 9.0, .sender = 0x11});
+  return testing::EncodeInputs(testing::MakeInputs(drive), VehicleConfig{});
+}
+
+void Play(LcmBus& bus, const std::vector<WireMessage>& messages) {
+  const auto start = std::chrono::steady_clock::now();
+  for (const WireMessage& message : messages) {
+    std::this_thread::sleep_until(start + (message.received - testing::DriveStart()));
+    bus.Publish(message.channel, message.bytes);
+  }
+}
+
+// The lists that the same messages give without any process round them.
+std::string DigestOf(const std::vector<WireMessage>& messages) {
+  Engine engine{DaemonConfig{}};
+  Outbox outbox;
+  for (const WireMessage& message : messages) {
+    outbox.Clear();
+    engine.OnMessage(message.channel, message.bytes, message.received, outbox);
+  }
+  return engine.digest_local();
+}
+
+TEST_F(LiveProcess, PerceptionGoesOnWhereverStderrLeads) {
+  const std::vector<WireMessage> messages = DriveMessages(2.5);
+  const std::string expected = DigestOf(messages);
+  // A pipe that is full to the brim and that nobody empties.
+  ASSERT_EQ(mkfifo(Path("full_pipe").c_str(), 0600), 0);
+  const int full_pipe = open(Path("full_pipe").c_str(), O_RDWR | O_NONBLOCK);
+  const std::vector<char> water(4096, '.');
+  while (write(full_pipe, water.data(), water.size()) > 0) {
+  }
+  for (const std::string redirections :
+       {">/dev/full 2>&1", ">&- 2>&-", "<&- >&- 2>&-", "2> >(exit 0)", "2>full_pipe"}) {
+    StatusListener listener;
+    const auto daemon = Start(redirections);
+    ASSERT_TRUE(Eventually([&] { return listener.count() > 0; }, 10s)) << redirections;
+    Play(listener.bus(), messages);
+    EXPECT_TRUE(Eventually(
+        [&] { return listener.newest().digest_local == expected || !daemon->IsRunning(); }, 5s))
+        << redirections;
+    daemon->Signal(SIGTERM);
+    EXPECT_EQ(daemon->Wait(2s), 0) << redirections;
+  }
+  close(full_pipe);
+}
+
+TEST_F(LiveProcess, ASecondDaemonIsNoticedByBothAndItsEndToo) {
+  StatusListener listener;
+  const auto first = Start("2>" + Path("first.txt"));
+  ASSERT_TRUE(Eventually([&] { return listener.count() > 0; }, 10s));
+  std::this_thread::sleep_for(2500ms);
+  EXPECT_THAT(TextOf(Path("first.txt")), Not(HasSubstr("foreign_outputs")));
+  const auto second = Start("2>" + Path("second.txt"));
+  for (const char* file : {"first.txt", "second.txt"}) {
+    EXPECT_TRUE(Eventually(
+        [&] { return TextOf(Path(file)).find("event=foreign_outputs ") != std::string::npos; }, 8s))
+        << TextOf(Path(file));
+  }
+  second->Signal(SIGTERM);
+  EXPECT_EQ(second->Wait(3s), 0);
+  EXPECT_TRUE(Eventually(
+      [&] {
+        return TextOf(Path("first.txt")).find("event=foreign_outputs_ended") != std::string::npos;
+      },
+      8s))
+      << TextOf(Path("first.txt"));
+  first->Signal(SIGTERM);
+  EXPECT_EQ(first->Wait(3s), 0);
+}
+
+// LCM's sending socket has the stock buffer and is not meant.
+TEST_F(LiveProcess, StatusTellsTheBufferOfTheReceivingSocket) {
+  constexpr int kAsked = 1 << 20;
+  const int probe = socket(AF_INET, SOCK_DGRAM, 0);
+  setsockopt(probe, SOL_SOCKET, SO_RCVBUF, &kAsked, sizeof(kAsked));
+  int granted = 0;
+  socklen_t length = sizeof(granted);
+  getsockopt(probe, SOL_SOCKET, SO_RCVBUF, &granted, &length);
+  close(probe);
+  std::string url = std::getenv("LCM_DEFAULT_URL");
+  url = url.substr(0, url.find('?')) + "?ttl=0&recv_buf_size=" + std::to_string(kAsked);
+  StatusListener listener;
+  const auto daemon = Start("-l '" + url + "' 2>/dev/null");
+  EXPECT_TRUE(Eventually([&] { return listener.newest().receive_buffer_bytes == granted; }, 10s))
+      << listener.newest().receive_buffer_bytes << " of " << granted;
+  daemon->Signal(SIGTERM);
+  EXPECT_EQ(daemon->Wait(3s), 0);
+}
+
+TEST_F(LiveProcess, PenaltiesOutliveTheDaemonAndTheSwitchTurnsThatOff) {
+  TrustFile file;
+  file.saved = FromMicros(std::chrono::duration_cast<std::chrono::microseconds>(
+                              std::chrono::system_clock::now().time_since_epoch())
+                              .count());
+  file.senders.push_back({.sender = 0xABCD, .state = TrustState::kRevoked, .accusations = 3});
+  const std::string state = Path("trust.state");
+  const auto run = [&](const std::string& arguments) {
+    StatusListener listener;
+    const auto daemon = Start(arguments + " 2>" + Path("daemon.txt"));
+    EXPECT_TRUE(Eventually([&] { return listener.count() > 0; }, 10s)) << arguments;
+    daemon->Signal(SIGTERM);
+    EXPECT_EQ(daemon->Wait(3s), 0);
+    return TextOf(Path("daemon.txt"));
+  };
+  std::ofstream(state) << PrintTrust(file);
+  EXPECT_THAT(run("--state " + state), HasSubstr("senders=1 penalties=1"));
+  EXPECT_THAT(run("--state " + state), HasSubstr("senders=1 penalties=1"));
+  EXPECT_THAT(TextOf(state), HasSubstr("0000abcd 0000000000000000 REVOKED 0 3"));
+  EXPECT_THAT(run("--state " + state + " --no-state"), HasSubstr("event=state_off"));
+
+  // Found where systemd says.
+  setenv("STATE_DIRECTORY", folder_.c_str(), 1);
+  EXPECT_THAT(run(""), HasSubstr("senders=1 penalties=1"));
+  unsetenv("STATE_DIRECTORY");
+  EXPECT_THAT(run(""), HasSubstr("event=state_off"));
+
+  // Damaged: said, and started without. A file that is none of ours stays what it is.
+  std::string damaged = PrintTrust(file);
+  damaged[damaged.size() / 2] ^= 1;
+  std::ofstream(state, std::ios::trunc) << damaged;
+  EXPECT_THAT(run("--state " + state), HasSubstr("is damaged"));
+  std::ofstream(state, std::ios::trunc) << "timeline:\n  future_s: 1\n";
+  EXPECT_THAT(run("--state " + state), HasSubstr("is no trust file"));
+  EXPECT_EQ(TextOf(state), "timeline:\n  future_s: 1\n");
+}
+
+TEST_F(LiveProcess, AWrongUrlEndsWithCode2AndWordsWhereverItStands) {
+  const auto words_of = [&](const std::string& arguments) {
+    const auto daemon = Start(arguments);
+    EXPECT_EQ(daemon->Wait(5s), 2) << arguments;
+    return daemon->Output();
+  };
+  EXPECT_THAT(words_of("-l tcpq://"), HasSubstr("names no host"));
+  EXPECT_THAT(words_of("-l udpm://239.255.76.67"), HasSubstr("has no port"));
+  EXPECT_THAT(words_of("-l udpm://nonsense:7667"), HasSubstr("must be a multicast address"));
+  EXPECT_THAT(words_of("--v2v-lcm-url udpm://239.255.76.67:0"), HasSubstr("from 1 to 65535"));
+  std::ofstream(Path("vehicle.yaml")) << "lcm:\n  v2v_url: 'udpm://239.255.76.67:7668?tll=0'\n";
+  EXPECT_THAT(words_of("--config " + Path("vehicle.yaml")), HasSubstr("unknown option \"tll\""));
+  const std::string kept = std::getenv("LCM_DEFAULT_URL");
+  setenv("LCM_DEFAULT_URL", "nonsense", 1);
+  EXPECT_THAT(words_of(""), HasSubstr("must begin with a provider"));
+  setenv("LCM_DEFAULT_URL", kept.c_str(), 1);
+}
+
+}  // namespace
+}  // namespace v2vouch

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all programs have in common: results that go nowhere are a failure, a wrong LCM URL is
+// named, outputs harm nothing that stands where they go.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/child_process.h"
+
+namespace v2vouch {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+const char* const kPrograms[] = {
+    "v2vouchd",         "v2vouch-replay",       "v2vouch-sim",    "v2vouch-eval",
+    "v2vouch-campaign", "v2vouch-calibrate",    "v2vouch-import", "v2vouch-detect",
+    "v2vouch-annotate", "v2vouch-bench-tracker"};
+
+class Programs : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::getenv("V2VOUCH_BIN") == nullptr) GTEST_SKIP() << "SKIPPED: V2VOUCH_BIN is not set";
+    bin_ = std::string(std::getenv("V2VOUCH_BIN")) + "/";
+    std::string pattern = (fs::temp_directory_path() / "programs_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  void TearDown() override {
+    if (!folder_.empty()) fs::remove_all(folder_);
+  }
+  [[nodiscard]] std::string Path(const std::string& name) const { return folder_ / name; }
+  [[nodiscard]] Finished Run(const std::string& line) const {
+    return Execute("cd " + folder_.string() + " && " + bin_ + line);
+  }
+  // Both streams of a program whose standard output goes elsewhere.
+  [[nodiscard]] Finished Into(const std::string& output, const std::string& line) const {
+    return Run(line + " 2>&1 >" + output);
+  }
+  static std::string TextOf(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  std::string bin_;
+  fs::path folder_;
+};
+
+TEST_F(Programs, ResultsThatStandardOutputDoesNotTakeAreExitCode1AndSaid) {
+  for (const std::string program : kPrograms) {
+    for (const char* line : {" --help", " --version"}) {
+      const Finished full = Into("/dev/full", program + line);
+      EXPECT_EQ(full.code, 1) << program << line;
+      EXPECT_THAT(full.output, HasSubstr(program + ": standard output: No space left"));
+      const Finished closed = Into("&-", program + line);
+      EXPECT_EQ(closed.code, 1) << program << line;
+      EXPECT_THAT(closed.output, HasSubstr(program + ": standard output: "));
+      EXPECT_EQ(Into("/dev/null", program + line).code, 0) << program << line;
+    }
+  }
+  EXPECT_EQ(Into("/dev/full", "v2vouch-sim list").code, 1);
+  EXPECT_EQ(Into("/dev/full", "v2vouchd --print-config").code, 1);
+  EXPECT_EQ(Into("/dev/full", "v2vouch-bench-tracker --generate 5 --frames 30 --json").code, 1);
+}
+
+TEST_F(Programs, WithStderrFullOrClosedTheyWorkAsEver) {
+  for (const char* redirection : {" 2>/dev/full", " 2>&-", " <&- 2>&-"}) {
+    const Finished sim =
+        Run(std::string("v2vouch-sim run smoke --duration 1 --out a.lcm --json") + redirection);
+    EXPECT_EQ(sim.code, 0) << redirection;
+    const Finished replay =
+        Run(std::string("v2vouch-replay a.lcm --out b.lcm --json") + redirection);
+    EXPECT_EQ(replay.code, 0) << redirection;
+    EXPECT_THAT(replay.output, HasSubstr("\"digest_local\""));
+    // Nothing meant for stderr has got into a file.
+    EXPECT_EQ(TextOf(Path("a.lcm")).substr(0, 4), "\xED\xA1\xDA\x01");
+  }
+}
+
+TEST_F(Programs, AWrongLcmUrlIsNamedByEach) {
+  for (const std::string program : kPrograms) {
+    const std::string command = program == "v2vouch-sim" ? " run smoke --live" : "";
+    if (program == "v2vouch-import") continue;  // Has no such option.
+    const Finished wrong = Run(program + command + " -l tcpq:// 2>&1");
+    EXPECT_EQ(wrong.code, 2) << program;
+    EXPECT_THAT(wrong.output, HasSubstr("has no port")) << program;
+  }
+  const Finished environment =
+      Execute("LCM_DEFAULT_URL=udpm://1.2.3.4:1 " + bin_ + "v2vouch-sim run smoke --live 2>&1");
+  EXPECT_EQ(environment.code, 2);
+  EXPECT_THAT(environment.output, HasSubstr("must be a multicast address"));
+}
+
+TEST_F(Programs, OutputsHarmNothing) {
+  ASSERT_EQ(Run("v2vouch-sim run smoke --duration 1 --out a.lcm").code, 0);
+  const std::string log = TextOf(Path("a.lcm"));
+  // The input, under its name, another one or through a link.
+  fs::create_hard_link(Path("a.lcm"), Path("hard.lcm"));
+  fs::create_symlink("a.lcm", Path("soft.lcm"));
+  for (const char* out : {"a.lcm", "./a.lcm", "hard.lcm", "soft.lcm"}) {
+    const Finished replay = Run("v2vouch-replay a.lcm --out " + std::string(out) + " 2>&1");
+    EXPECT_EQ(replay.code, 1) << out;
+    EXPECT_THAT(replay.output, ::testing::AnyOf(HasSubstr("is the file that is being read"),
+                                                HasSubstr("is a symbolic link to a.lcm")));
+    EXPECT_EQ(TextOf(Path("a.lcm")), log) << out;
+  }
+  const Finished calibrate = Run("v2vouch-calibrate a.lcm --out a.lcm 2>&1");
+  EXPECT_EQ(calibrate.code, 1);
+  EXPECT_THAT(calibrate.output, HasSubstr("is the file that is being read"));
+  std::ofstream(Path("scenario.yaml")) << "traffic: {}\n";
+  ASSERT_EQ(Run("v2vouch-bench-tracker --generate 3 --frames 30 --out t.csv").code, 0);
+  const std::string table = TextOf(Path("t.csv"));
+  EXPECT_EQ(Run("v2vouch-bench-tracker t.csv --rotate 1 --out t.csv 2>&1").code, 1);
+  EXPECT_EQ(TextOf(Path("t.csv")), table);
+
+  // Devices stay devices; a full one is a failure.
+  for (const char* line :
+       {"v2vouch-sim run smoke --duration 1 --out ", "v2vouch-replay a.lcm --out ",
+        "v2vouch-bench-tracker --generate 3 --frames 30 --out "}) {
+    EXPECT_EQ(Run(std::string(line) + "/dev/null").code, 0) << line;
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    const Finished full = Run(std::string(line) + "/dev/full 2>&1");
+    EXPECT_EQ(full.code, 1) << line;
+    EXPECT_THAT(full.output, HasSubstr("No space left")) << line;
+    EXPECT_TRUE(fs::is_character_file("/dev/full"));
+    const Finished nowhere = Run(std::string(line) + "none/x 2>&1");
+    EXPECT_EQ(nowhere.code, 1) << line;
+    EXPECT_THAT(nowhere.output, HasSubstr("none")) << line;
+  }
+  // Into a pipe, as one would.
+  EXPECT_EQ(Run("v2vouch-sim run smoke --duration 1 --out /dev/stdout --json | head -c 4").output,
+            "\xED\xA1\xDA\x01");
+}
+
+TEST_F(Programs, AStopIsHeardWithinASecond) {
+  ASSERT_EQ(Run("v2vouch-sim run left_turn --duration 30 --out a.lcm").code, 0);
+  for (const char* line : {"v2vouch-replay a.lcm --out b.lcm",
+                           "v2vouch-sim run left_turn --out c.lcm", "v2vouch-eval a.lcm"}) {
+    const Finished stopped = Execute("cd " + folder_.string() + " && timeout -k 1.2 0.2 " + bin_ +
+                                     line + " >/dev/null 2>&1");
+    EXPECT_NE(stopped.code, 137) << line;  // Had to be killed.
+  }
+}
+
+}  // namespace
+}  // namespace v2vouch
