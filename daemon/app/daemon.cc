@@ -74,6 +74,13 @@ class Daemon {
       std::this_thread::sleep_for(kPopTimeout);
     }
     spdlog::info("event=started version={} inputs={}", V2VOUCH_VERSION, engine_.channels().size());
+    if (ports_.size() == 2 && ports_[0] == ports_[1] && ports_[0] != 0) {
+      spdlog::warn(
+          "event=v2v_url_shares_port port={} hint=\"another group on the same port separates "
+          "nothing; "
+          "give BSMs a port of their own\"",
+          ports_[0]);
+    }
     LogCalibration();
     engine_.Start(outbox_);
     Publish();
@@ -161,6 +168,7 @@ class Daemon {
       RefreshFigures();
       LogRefusals();
       LogMounts();
+      ReportWaiting();
       LogNotices();
     }
   }
@@ -268,12 +276,16 @@ class Daemon {
   }
 
   void ReportWaiting() {
-    const int failures = own_bus_->failures();
-    if (failures > 0 && failures != reported_failures_) {
-      spdlog::warn("event=no_lcm url=\"{}\" attempt={} hint=\"is there a multicast route?\"",
-                   config_.lcm.url, failures);
-      reported_failures_ = failures;
-    }
+    Report(*own_bus_, config_.lcm.url, reported_failures_);
+    if (v2v_bus_) Report(*v2v_bus_, config_.lcm.v2v_url, reported_v2v_failures_);
+  }
+
+  static void Report(const Receiver& bus, const std::string& url, int& reported) {
+    const int failures = bus.failures();
+    if (bus.is_open() || failures == 0 || failures == reported) return;
+    spdlog::warn("event=no_lcm url=\"{}\" attempt={} hint=\"is there a multicast route?\"", url,
+                 failures);
+    reported = failures;
   }
 
   DaemonSummary Summary() {
@@ -302,6 +314,7 @@ class Daemon {
   ReasonCounts logged_{};
   std::int64_t logged_drops_ = 0;
   int reported_failures_ = 0;
+  int reported_v2v_failures_ = 0;
   ForeignOutputs foreign_;
   std::int64_t foreign_before_ = 0;
   std::int64_t bsm_drops_before_ = 0;

@@ -86,6 +86,10 @@ void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
       monitor_.Restart();
       published_ = {};
     }
+    // A frame brings to light what became of claims that waited for it.
+    const bool is_claims =
+        diagnostic.reason == Reason::kBsmContradicted || diagnostic.reason == Reason::kNoGnss;
+    if (is_claims && !std::holds_alternative<Bsm>(input)) continue;
     if (RefusesTheInput(diagnostic.reason)) is_accepted = false;
   }
   const MessageHeader& header = HeaderOf(input);

@@ -39,6 +39,9 @@ constexpr double kOnTime_s = 0.1;
 // Events without a checkpoint in a row, at most: where no frames come the ego's motion gets some.
 constexpr std::size_t kLongestRun = 64;
 
+// Late claims that may wait for the next frame, at most: frames may fail to come.
+constexpr int kMostWaiting = 256;
+
 bool InsertOnce(std::vector<std::uint64_t>& set, std::uint64_t value) {
   if (std::find(set.begin(), set.end(), value) != set.end()) return false;
   set.push_back(value);
@@ -172,18 +175,37 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outp
   const bool is_last = later == events_.end();
   const bool is_last_of_local =
       std::none_of(later, events_.end(), [](const auto& other) { return IsLocal(other->input); });
-  std::size_t from = place;
-  while (!is_last && from > 0 && !events_[from - 1]->after) --from;
-  const Checkpoint& start =
-      from > 0 && events_[from - 1]->after ? *events_[from - 1]->after : *before_;
+  const auto restart = [this](std::size_t at) {  // Behind the last checkpoint before it.
+    while (at > 0 && !events_[at - 1]->after) --at;
+    return at;
+  };
+  const auto state_at = [this](std::size_t at) -> const Checkpoint& {
+    return at > 0 ? *events_[at - 1]->after : *before_;
+  };
 
   // A claim or a fix cannot change LOCAL, so LOCAL is not even asked.
   Placement placement{.is_taken = true};
   if (is_local) {
-    if (!is_last_of_local) local_ = start.local;
-    placement.local_frames = RunLocal(is_last_of_local ? place : from, outputs);
+    if (!is_last_of_local) local_ = state_at(restart(place)).local;
+    placement.local_frames = RunLocal(is_last_of_local ? place : restart(place), outputs);
   }
-  if (!is_last) priority_ = start.priority;
+  if (MayWait(place, is_last)) {
+    if (key.rank == kClaimRank) {
+      waiting_ = std::min(waiting_.value_or(key), key);
+      ++waiting_claims_;
+    }
+    return placement;
+  }
+  std::size_t from = place;
+  if (!is_last || waiting_) {
+    const EventKey first = std::min(waiting_.value_or(key), key);
+    from = restart(static_cast<std::size_t>(
+        std::ranges::find_if(events_, [&](const auto& event) { return event->key >= first; }) -
+        events_.begin()));
+    priority_ = state_at(from).priority;
+  }
+  waiting_.reset();
+  waiting_claims_ = 0;
   placement.v2v_events = RunPriority(from, outputs);
 
   placement.has_frame = events_[place]->has_frame;
@@ -193,6 +215,15 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outp
                   [](const auto& other) { return other->has_frame; });
   Trim();
   return placement;
+}
+
+// The ego's motion changes nothing of the V2V side, unless it comes late or is a checkpoint. Where
+// every message's verdict is asked for, it is worked out at once.
+bool Timeline::MayWait(std::size_t place, bool is_last) const {
+  const Event& event = *events_[place];
+  if (event.key.rank == kEgoRank) return waiting_ && is_last && !event.after;
+  return event.key.rank == kClaimRank && (!is_last || waiting_) && waiting_claims_ < kMostWaiting &&
+         !config_.v2v.message_verdicts;
 }
 
 int Timeline::RunLocal(std::size_t from, Outputs& outputs) {

@@ -44,6 +44,10 @@ EventKey KeyOf(const TimelineInput& input);
 /// one frame more: LOCAL and then the V2V side when it is an own sensor's, the V2V side alone when
 /// it is a GNSS fix or a claim. Any order of arrival within the replay buffer ends in the same
 /// state, bit for bit.
+///
+/// Late claims are put in their places at once, but the V2V side is re-run for all of them
+/// together, with the next frame or fix: a flood that comes a little late would else cost one
+/// re-run, of all claims since, for each of its messages. Until then priority() is without them.
 class Timeline {
  public:
   explicit Timeline(const PerceptionConfig& config);
@@ -118,6 +122,8 @@ class Timeline {
   /// Both from event `from` to the newest. @return the number of frames / V2V events stepped.
   int RunLocal(std::size_t from, Outputs& outputs);
   int RunPriority(std::size_t from, Outputs& outputs);
+  /// Whether the V2V side may wait with event `place`, which was just put in.
+  [[nodiscard]] bool MayWait(std::size_t place, bool is_last) const;
   void EmitOnce(Event& event, const Outputs& step, Outputs& outputs);
   void Trim();
 
@@ -136,6 +142,8 @@ class Timeline {
   double budget_ = 0.0;              // Frames that may still be run again.
   Timestamp newest_{};               // Of any frame or claim.
   Timestamp settled_{};
+  std::optional<EventKey> waiting_;  // The oldest claim that the V2V side has not been run for.
+  int waiting_claims_ = 0;
   Outputs step_;
 };
 

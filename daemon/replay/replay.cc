@@ -71,31 +71,6 @@ class UnseenPictures {
   std::vector<std::int64_t> balance_;
 };
 
-void Note(const std::string& channel) {
-    if (const auto found = pictures_.find(channel); found != pictures_.end()) {
-      ++balance_[found->second];
-    } else if (const auto seen = detections_.find(channel); seen != detections_.end()) {
-      --balance_[seen->second];
-    }
-  }
-  [[nodiscard]] std::int64_t count() const {
-    std::int64_t sum = 0;
-    for (const std::int64_t each : balance_) sum += std::max<std::int64_t>(0, each);
-    return sum;
-  }
-
- private:
-  std::map<std::string, std::size_t> pictures_;
-  std::map<std::string, std::size_t> detections_;
-  std::size_t cameras_ = 0;
-  std::vector<std::int64_t> balance_;
-};
-
-bool IsSameFile(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return std::filesystem::equivalent(a, b, ignored);
-}
-
 void Note(const std::vector<NoticeBoard::Change>& changes, std::vector<ReplayedNotice>& notices) {
   for (const NoticeBoard::Change& change : changes) {
     if (!change.has_begun) continue;

@@ -136,6 +136,40 @@ TEST(LateData, ALateFixStepsTheV2vSideAlone) {
   FAIL() << "the drive is too short";
 }
 
+// A radio that is read a little late, be it for a flood: each of its messages lies before the
+// newest frame. The V2V side is re-run once per frame, not once per message.
+TEST(LateData, LateClaimsAreRunTogetherWithTheNextFrame) {
+  const SyntheticDrive drive = Traffic(2.0);
+  for (const double late_s : {0.0, 0.03, 0.3}) {
+    Timeline timeline(ConfigOf(drive));
+    Outputs outputs;
+    int claims = 0;
+    int frames = 0;
+    int steps = 0;
+    Timestamp next = DriveStart();
+    for (const Input& input : MakeInputs(drive)) {
+      // 2000 claims a second, in order among themselves.
+      for (; next <= HeaderOf(input).stamp; next += FromSeconds(0.0005)) {
+        Claim claim;
+        claim.sender = static_cast<SenderId>(100 + claims % 200);
+        claim.received = next - FromSeconds(late_s);
+        const auto placement = timeline.Insert(TimedClaim{claim, claims, std::nullopt}, outputs);
+        steps += placement.v2v_events;
+        if (placement.is_taken) ++claims;
+      }
+      const auto event = ForTimeline(input);
+      if (!event) continue;
+      steps += timeline.Insert(*event, outputs).v2v_events;
+      if (IsFrame(input)) ++frames;
+    }
+    EXPECT_GT(claims, 2500);
+    // A re-run covers the time by which they are late, a frame's period and the way back to a
+    // checkpoint: 50 frames and 2000 claims a second.
+    const double per_frame = 2050.0 * (late_s + 0.06);
+    EXPECT_LE(steps, claims + frames * per_frame) << late_s;
+  }
+}
+
 // An ego sample in order, or late but newer than every frame, costs no frame at all.
 TEST(LateData, AnEgoSampleReRunsOnlyFramesAfterIt) {
   const SyntheticDrive drive = Traffic(2.0);
