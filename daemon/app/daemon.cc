@@ -193,7 +193,8 @@ class Daemon {
     std::vector<Notice> notices;
     const auto note = [&](NoticeKind kind, std::int64_t total, std::int64_t& before) {
       if (total > before) {
-        notices.push_back({.kind = kind, .value = static_cast<double>(total - before)});
+        notices.push_back(
+            {.kind = kind, .subject = {}, .value = static_cast<double>(total - before)});
       }
       before = total;
     };

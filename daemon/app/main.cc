@@ -67,6 +67,7 @@ int main(int argc, char** argv) {
   std::string v2v_url;
   std::string state_file;
   bool prints_config = false;
+  bool keeps_no_state = false;
   CLI::App app("Tells the car which vehicles are around it, and which it may rely on.");
   app.footer(kExamples);
   app.add_option("--config", config_path, "Vehicle description (default: the shipped vehicle)");
@@ -77,7 +78,7 @@ int main(int argc, char** argv) {
   app.add_option("--state", state_file,
                  "File that keeps senders' penalties over a restart (default: state.file of the "
                  "configuration, else trust.state in STATE_DIRECTORY, else none)");
-  auto* no_state = app.add_flag("--no-state", "Neither read nor write such a file");
+  app.add_flag("--no-state", keeps_no_state, "Neither read nor write such a file");
   app.add_flag("--print-config", prints_config, "Print the effective configuration and end");
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouchd", argc, argv)) return *code;
 
@@ -92,7 +93,7 @@ int main(int argc, char** argv) {
     const std::string folders = folder;  // systemd may name several, with a colon between.
     config.state.file = folders.substr(0, folders.find(':')) + "/trust.state";
   }
-  if (no_state->count() > 0) config.state.enabled = false;
+  if (keeps_no_state) config.state.enabled = false;
   for (const std::string& given : {v2vouch::EffectiveLcmUrl(config.lcm.url), config.lcm.v2v_url}) {
     const auto faults = v2vouch::LcmUrlProblems(given);
     problems.insert(problems.end(), faults.begin(), faults.end());

@@ -6,6 +6,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
@@ -213,17 +214,18 @@ TEST_P(LiveFlood, DelaysNoListAndLosesNoOwnMessage) {
   fs::remove_all(folder);
 }
 
+std::string NameOf(std::size_t index) {
+  constexpr std::array<const char*, 3> kNames = {"RandomIdentities", "ThousandNeighbours",
+                                                 "ThousandNeighboursOnTheSensorsPort"};
+  return kNames.at(index);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, LiveFlood,
                          ::testing::Values(Case{testing::FloodKind::kRandom, 5000.0, 5, 10'000, 64},
                                            Case{testing::FloodKind::kCrowd, 10000.0, 0, 0, 1000},
                                            Case{testing::FloodKind::kCrowd, 10000.0, 0, 0, 1000,
                                                 false}),
-                         [](const auto& test) {
-                           constexpr const char* kNames[] = {"RandomIdentities",
-                                                             "ThousandNeighbours",
-                                                             "ThousandNeighboursOnTheSensorsPort"};
-                           return kNames[test.index];
-                         });
+                         [](const auto& test) { return NameOf(test.index); });
 
 }  // namespace
 }  // namespace v2vouch
