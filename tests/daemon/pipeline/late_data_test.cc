@@ -143,6 +143,7 @@ TEST(LateData, LateClaimsAreRunTogetherWithTheNextFrame) {
   for (const double late_s : {0.0, 0.03, 0.3}) {
     Timeline timeline(ConfigOf(drive));
     Outputs outputs;
+    Newest newest;
     int claims = 0;
     int frames = 0;
     int steps = 0;
@@ -153,13 +154,14 @@ TEST(LateData, LateClaimsAreRunTogetherWithTheNextFrame) {
         Claim claim;
         claim.sender = static_cast<SenderId>(100 + claims % 200);
         claim.received = next - FromSeconds(late_s);
-        const auto placement = timeline.Insert(TimedClaim{claim, claims, std::nullopt}, outputs);
+        const auto placement =
+            timeline.Insert(TimedClaim{claim, claims, std::nullopt}, newest.Hear(next), outputs);
         steps += placement.v2v_events;
         if (placement.is_taken) ++claims;
       }
       const auto event = ForTimeline(input);
       if (!event) continue;
-      steps += timeline.Insert(*event, outputs).v2v_events;
+      steps += timeline.Insert(*event, newest.Hear(HeaderOf(input).stamp), outputs).v2v_events;
       if (IsFrame(input)) ++frames;
     }
     EXPECT_GT(claims, 2500);
