@@ -52,7 +52,11 @@ Eigen::Vector2d AntennaVelocity_B(const Eigen::Vector2d& antenna_B, const EgoSta
 
 AlignmentFilter::AlignmentFilter(const FixInPlane& fix, double yaw_LO_rad, double yaw_sigma_rad,
                                  const Eigen::Vector2d& antenna_B, const EgoState& ego)
-    : X_OB_(ego.X_OB), stamp_(ego.stamp), last_update_(ego.stamp) {
+    : X_OB_(ego.X_OB),
+      gyro_offset_radps_(ego.gyro_offset_radps),
+      speed_factor_(ego.speed_factor),
+      stamp_(ego.stamp),
+      last_update_(ego.stamp) {
   const Eigen::Vector2d arm_L = Rotation(yaw_LO_rad) * (ego.X_OB.rotation() * antenna_B);
   const Eigen::Vector2d arm_slope = Turned(arm_L);
   const double yaw_variance = yaw_sigma_rad * yaw_sigma_rad;
@@ -78,6 +82,13 @@ void AlignmentFilter::Predict(const EgoState& ego, const AlignmentNoise& noise) 
   const double turned_O = AngleDifference(ego.X_OB.yaw_rad(), X_OB_.yaw_rad());
   const double distance = moved_O.norm();
   const bool is_standing = IsStanding(ego);
+  // What odometry has learnt to correct since is no longer left for this filter.
+  mean_(kYawDrift) += ego.gyro_offset_radps - gyro_offset_radps_;
+  if (ego.speed_factor != speed_factor_) {
+    mean_(kScale) = (1.0 + mean_(kScale)) * speed_factor_ / ego.speed_factor - 1.0;
+  }
+  gyro_offset_radps_ = ego.gyro_offset_radps;
+  speed_factor_ = ego.speed_factor;
 
   // Yaw at the middle of the interval, so that a drift during it is counted half.
   const double drift = is_standing ? 0.0 : mean_(kYawDrift) * dt;

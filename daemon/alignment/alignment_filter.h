@@ -88,6 +88,8 @@ class AlignmentFilter {
   Vector mean_ = Vector::Zero();
   Matrix covariance_ = Matrix::Identity();
   Pose<Odometry, Body> X_OB_;
+  double gyro_offset_radps_ = 0.0;  // As taken off in odometry,
+  double speed_factor_ = 1.0;       // and as corrected in it: what is left is estimated here.
   Timestamp stamp_{};
   Timestamp last_update_{};
 };

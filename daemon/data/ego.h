@@ -15,6 +15,8 @@ struct EgoState {
   double accel_mps2 = 0.0;  ///< Along body x.
   double speed_sigma_mps = 0.1;
   double yaw_rate_sigma_radps = 0.002;
+  double gyro_offset_radps = 0.0;  ///< Learnt, and taken off the yaw rate already.
+  double speed_factor = 1.0;       ///< Learnt, and in the speed already.
   friend bool operator==(const EgoState&, const EgoState&) = default;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -33,6 +34,10 @@ class EgoReading {
   void CollectNotices(std::vector<Notice>& notices) const;
 
   [[nodiscard]] const GyroOffset& gyro() const { return gyro_; }
+  /// Unit and tyre size as corrected; 1 where they are not.
+  [[nodiscard]] double speed_factor() const {
+    return config_.check_speed ? std::abs(speed_.factor()) : 1.0;
+  }
   [[nodiscard]] const SpeedCheck& speed() const { return speed_; }
   [[nodiscard]] const YawCheck& yaw() const { return yaw_; }
 

@@ -47,13 +47,16 @@ double EgoOdometry::AccelerationFromSpeeds(Timestamp stamp, double speed_mps) co
   return 0.0;
 }
 
-void EgoOdometry::OnEgoMotion(const EgoMotion& sample) {
+void EgoOdometry::OnEgoMotion(const EgoMotion& sample, double gyro_offset_radps,
+                              double speed_factor) {
   EgoState next;
   next.stamp = sample.stamp;
   next.speed_mps = sample.speed_mps;
   next.yaw_rate_radps = sample.yaw_rate_radps;
   next.speed_sigma_mps = sample.speed_sigma_mps;
   next.yaw_rate_sigma_radps = sample.yaw_rate_sigma_radps;
+  next.gyro_offset_radps = gyro_offset_radps;
+  next.speed_factor = speed_factor;
   if (count_ > 0) {
     const EgoState& last = Sample(0);
     if (next.stamp < last.stamp) return;

@@ -29,7 +29,9 @@ class EgoOdometry {
 
   /// Samples come in order of stamp (the pipeline re-runs late ones). One with the stamp of the
   /// newest replaces it; an older one is ignored.
-  void OnEgoMotion(const EgoMotion& sample);
+  /// `gyro_offset_radps`, `speed_factor`: what was corrected in it, for EgoState.
+  void OnEgoMotion(const EgoMotion& sample, double gyro_offset_radps = 0.0,
+                   double speed_factor = 1.0);
 
   /// The ego at `t`, from the newest sample with stamp <= t, extrapolated. nullopt: no sample at or
   /// before t, t is older than the history, or that sample is more than kMaxGap_s old (then the

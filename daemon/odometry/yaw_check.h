@@ -12,8 +12,8 @@ namespace v2vouch {
 /// Yaw rate against the Doppler of the standing world. A radar ahead of the rear axle moves
 /// sideways in a turn; where the yaw rate is wrong by dw, the speed that a return votes for is off
 /// by dw t, t = x tan a - y. Votes with |t| > 2.5 m are counted for each dw of a grid, fading
-/// within a second; one that both sides (signs of t) support and that has 1.4 times the votes of dw = 0
-/// for kHold_s makes the yaw rate suspect. Reported only: nothing is corrected. Copyable, fixed
+/// within a second; one that both sides (signs of t) support and that has 1.4 times the votes of dw
+/// = 0 for kHold_s makes the yaw rate suspect. Reported only: nothing is corrected. Copyable, fixed
 /// size.
 class YawCheck {
  public:

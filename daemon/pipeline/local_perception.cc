@@ -74,7 +74,8 @@ LocalPerception::LocalPerception(const PerceptionConfig& config)
       last_camera_(config.vehicle.cameras.size()) {}
 
 void LocalPerception::OnEgoMotion(const EgoMotion& sample) {
-  odometry_.OnEgoMotion(ego_reading_.Read(sample));
+  const EgoMotion read = ego_reading_.Read(sample);
+  odometry_.OnEgoMotion(read, ego_reading_.gyro().offset_radps(), ego_reading_.speed_factor());
 }
 
 std::optional<Reason> LocalPerception::OnRadarScan(const RadarScan& scan,
@@ -82,7 +83,7 @@ std::optional<Reason> LocalPerception::OnRadarScan(const RadarScan& scan,
   const auto radar = static_cast<std::size_t>(scan.radar);
   if (!odometry_.StateAt(scan.stamp)) return Reason::kNoEgoMotion;
   if (const auto since = ego_reading_.OnRadarScan(scan, vehicle_->radars[radar])) {
-    odometry_.OnEgoMotion(ego_reading_.Read(EgoMotion(ego_reading_.newest())));
+    OnEgoMotion(EgoMotion(ego_reading_.newest()));
     tracker_.ForgetUnpicturedSince(*since);
   }
   const auto ego = odometry_.StateAt(scan.stamp);
