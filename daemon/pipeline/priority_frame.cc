@@ -22,6 +22,7 @@ constexpr double kMostBias = 0.95;  // Of what a bias may be: the filter stops t
 constexpr double kPart_s = 0.5;
 constexpr double kPartPosition_m = 0.5;
 constexpr double kPartYaw_rad = FromDegrees(8.0);
+constexpr double kExpectedSigma_m = 0.3;
 constexpr double kPartSpeed_mps = 0.7;
 
 // What the measurements of a part of a vehicle may be wrong by for as long as it shows no more.
@@ -55,6 +56,17 @@ bool IsOfAPart(const SensorMeasurement& measurement, const BridgeConfig& config)
   return camera.left_is_cut || camera.right_is_cut;
 }
 
+// The same of where the vehicle ought to be.
+bool IsPartlyCovered(const Occluder& expected, const SensorMeasurement& measurement,
+                     const VisibilityMap& map, const BridgeConfig& config) {
+  if (const auto* radar = std::get_if<RadarMeasurement>(&measurement)) {
+    return map.FromRadar(radar->radar, expected).uncovered < config.part_share;
+  }
+  const auto& camera = std::get<CameraMeasurement>(measurement);
+  const SensorView seen = map.FromCamera(camera.camera, expected);
+  return seen.left_is_covered || seen.right_is_covered;
+}
+
 Visibility SeenAs(View view) {
   switch (view) {
     case View::kOccluded:
@@ -67,6 +79,30 @@ Visibility SeenAs(View view) {
 }
 
 }  // namespace
+
+// Where the sender of a supported vehicle has it, by the residual that its claims had ten seconds
+// ago; of the size that the sensors give it. A LOCAL track that a part of its vehicle drags along
+// lies in clear view all the time, since its own footprint goes with the part. The claims tell that
+// the rest is hidden.
+std::optional<Occluder> PriorityPerception::ExpectedFootprint(const LocalTrack& track,
+                                                              Timestamp stamp) const {
+  const auto vehicle = std::ranges::find_if(vehicles_, [&](const PriorityVehicle& candidate) {
+    return candidate.id != 0 && candidate.is_supported && candidate.local_id == track.id;
+  });
+  if (vehicle == vehicles_.end()) return std::nullopt;
+  const Link* link = FindLink(vehicle->sender);
+  if (link == nullptr || !IsRecent(*link, stamp)) return std::nullopt;
+  const ResidualHistory& history = link->trust.history();
+  if (!history.is_settled()) return std::nullopt;
+  const bool has_direction = link->last.has_course;
+  return Occluder{
+      .id = track.id,
+      .centre_O = link->last.PlaceAt(stamp) - history.reference_O().value_or(history.mean_O()),
+      .yaw_rad = has_direction ? link->last.yaw_rad : track.state_O.mean[kYaw],
+      .length_m = track.extent.length_m,
+      .width_m = track.extent.width_m,
+      .position_sigma_m = kExpectedSigma_m};
+}
 
 void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& map) {
   sensed_stamp_ = frame.stamp;
@@ -89,9 +125,12 @@ void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& 
         sensed_.emplace_back(Sensed{.track = track, .is_sure = is_sure, .is_hit = is_hit});
     const auto before = std::ranges::find(parts_, track.id, &PartialLooks::track_id);
     if (before != parts_.end()) sensed.parts = *before;
+    const std::optional<Occluder> expected = ExpectedFootprint(track, frame.stamp);
     const bool is_of_a_part = std::ranges::any_of(frame.updates, [&](const SensorUpdate& update) {
       return update.track_id == track.id &&
-             IsOfAPart(update.measurement, settings_->priority.bridge);
+             (IsOfAPart(update.measurement, settings_->priority.bridge) ||
+              (expected &&
+               IsPartlyCovered(*expected, update.measurement, map, settings_->priority.bridge)));
     });
     if (is_of_a_part) {
       sensed.parts = PartialLooks{track.id, frame.stamp, std::nullopt};

@@ -165,6 +165,8 @@ class PriorityPerception {
 
   // Frame.
   void Remember(const LocalFrame& frame, const VisibilityMap& map);
+  [[nodiscard]] std::optional<Occluder> ExpectedFootprint(const LocalTrack& track,
+                                                          Timestamp stamp) const;
   void StepVehicle(PriorityVehicle& vehicle, const LocalFrame& frame, const VisibilityMap& map,
                    Outputs& outputs);
   void TakeSensorUpdates(PriorityVehicle& vehicle, const Sensed& sensed, const LocalFrame& frame);

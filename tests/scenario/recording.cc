@@ -15,6 +15,7 @@
 #include "sim/world/world.h"
 #include "v2vouch/bsm_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
+#include "v2vouch/misbehavior_report_t.hpp"
 #include "v2vouch/track_list_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
 
@@ -111,6 +112,11 @@ Outcome Perceive(const Recording& recording, const std::string& config_path) {
     outbox.Clear();
     engine.OnMessage(event.channel, event.bytes, event.arrival, outbox);
     for (const Outbox::Message& message : outbox.messages()) {
+      if (message.channel == "MISBEHAVIOR") {
+        const auto report = wire::Decode<misbehavior_report_t>(message.bytes);
+        outcome.reports.push_back(report ? report->check : "does not decode");
+        continue;
+      }
       const bool is_priority = message.channel == "TRACKS_PRIORITY";
       if (!is_priority && message.channel != "TRACKS_LOCAL") continue;
       const auto list = wire::Decode<track_list_t>(message.bytes);

@@ -26,6 +26,7 @@ struct Outcome {
   std::int64_t priority_tracks = 0;  ///< The same for TRACKS_PRIORITY.
   std::int64_t not_finite = 0;       ///< Lines with a NaN or infinity in state or covariance.
   std::set<std::uint32_t> vouched;   ///< TemporaryIDs ever listed in TRACKS_PRIORITY.
+  std::vector<std::string> reports;  ///< Checks of MISBEHAVIOR, in order.
 };
 
 Outcome Perceive(const Recording& recording, const std::string& config_path = "");

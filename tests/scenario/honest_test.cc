@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nobody lies: nobody is withdrawn.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/scenario/recording.h"
+
+namespace v2vouch::testing {
+namespace {
+
+struct Drive {
+  const char* scenario;
+  std::uint64_t seed;
+};
+
+class NobodyLies : public ::testing::TestWithParam<Drive> {};
+
+// As a car slips behind a waiting lorry the sensors measure an ever smaller part of it, which drags
+// its LOCAL track across by up to 3 m and turns it by up to 30 degrees.
+TEST_P(NobodyLies, NobodyIsWithdrawnAsItSlipsBehindALorry) {
+  const Recording recording = Record(GetParam().scenario, GetParam().seed);
+  ASSERT_FALSE(recording.empty());
+  const Outcome outcome = Perceive(recording);
+  EXPECT_THAT(outcome.reports, ::testing::IsEmpty());
+  EXPECT_GE(outcome.vouched.size(), 2u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, NobodyLies,
+                         ::testing::Values(Drive{"occlusion", 1}, Drive{"occlusion", 5},
+                                           Drive{"occlusion", 9}),
+                         [](const auto& param) {
+                           return std::string(param.param.scenario) +
+                                  std::to_string(param.param.seed);
+                         });
+
+}  // namespace
+}  // namespace v2vouch::testing
