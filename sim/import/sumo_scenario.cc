@@ -10,6 +10,7 @@
 #include "daemon/base/random.h"
 #include "daemon/data/object_class.h"
 #include "daemon/data/vehicle.h"
+#include "sim/import/drive_on.h"
 #include "sim/import/intersection.h"
 
 namespace v2vouch::sim {
@@ -145,6 +146,8 @@ bool MakeSumoScenario(const std::vector<FcdVehicle>& vehicles, const SumoOptions
   const VehicleConfig car;
   bodies[cut.ego] = {ObjectClass::kCar, car.length_m, car.width_m};
   motions[cut.ego] = CentreMotion(vehicles[cut.ego], bodies[cut.ego]);
+  // Sensors reach nearly as far as vehicles are kept: none may vanish before their eyes.
+  DriveOn(motions, bodies, cut.ego, cut.to_s, kKeepWithin_m);
 
   scenario.trajectories_csv = "time_s,id,class,x_m,y_m,yaw_rad,speed_mps,length_m,width_m\n";
   AppendRows(scenario.trajectories_csv, 1, bodies[cut.ego], motions[cut.ego], cut);
