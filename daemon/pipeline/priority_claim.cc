@@ -194,6 +194,8 @@ void PriorityPerception::CountMisfits(PriorityVehicle& vehicle, bool fits, bool 
 void PriorityPerception::KeepWithinReach(Link& link, PriorityVehicle& vehicle, Timestamp stamp) {
   const Eigen::Vector2d p_O = vehicle.filter.mean().head<2>();
   if (vehicle.CanReach(p_O, stamp, settings_->priority.bridge)) return;
+  // The sensors see a vehicle there that is where its sender says.
+  if (IsReturning(vehicle, stamp)) return;
   if (link.breaks == 0) return EndVehicle(vehicle, stamp);
   link.trust.OnFinding(stamp,
                        {"out_of_reach", Verdict::kWithdraw, "distance_m",

@@ -171,6 +171,8 @@ class PriorityPerception {
                    Outputs& outputs);
   void TakeSensorUpdates(PriorityVehicle& vehicle, const Sensed& sensed, const LocalFrame& frame);
   void LookForReturn(PriorityVehicle& vehicle, Timestamp stamp);
+  // Seen again within the last half second, where its sender says.
+  [[nodiscard]] bool IsReturning(const PriorityVehicle& vehicle, Timestamp stamp) const;
   [[nodiscard]] bool IsWhereClaimed(const LocalTrack& track, const PriorityVehicle& vehicle,
                                     Timestamp stamp) const;
   std::optional<Finding> Contradiction(PriorityVehicle& vehicle, Timestamp stamp) const;

@@ -24,11 +24,20 @@ constexpr double kMostDoubt_m = 1.5;
 constexpr double kMostDoubt_mps = 1.5;
 constexpr double kSlack_s = 0.5;     // A track born so long before the loss may still be its heir.
 constexpr double kPatience_s = 0.5;  // Hits of a return may lie so far apart.
+// The reach of the coast is capped for what nobody sees; seen again, a car that has sped up or
+// turned meanwhile may be farther off.
+constexpr double kSeenReach = 1.5;
 // A coast less certain than this contradicts nobody.
 constexpr double kUsefulCoast_m = 4.0;
 constexpr double kCoastGate = 9.21;
 constexpr double kSameSpeed_mps = 3.0;
 constexpr double kSameYaw_rad = FromDegrees(30.0);
+
+// What bounds a phantom need not bound a vehicle that the sensors see.
+BridgeConfig SeenReach(BridgeConfig config) {
+  config.reach_most_m *= kSeenReach;
+  return config;
+}
 
 double GateDistance(const Eigen::Vector2d& d, const Eigen::Matrix2d& S) {
   return d.dot(S.inverse() * d);
@@ -71,6 +80,12 @@ bool PriorityPerception::IsWhereClaimed(const LocalTrack& track, const PriorityV
          kClaimedSpeed_mps + 2.0 * std::min(std::hypot(speed_sigma_mps, yaw_mps), kMostDoubt_mps);
 }
 
+bool PriorityPerception::IsReturning(const PriorityVehicle& vehicle, Timestamp stamp) const {
+  return vehicle.regaining_id != 0 && ToSeconds(stamp - vehicle.last_regain) <= kPatience_s &&
+         vehicle.CanReach(vehicle.filter.mean().head<2>(), stamp,
+                          SeenReach(settings_->priority.bridge));
+}
+
 // A vehicle comes back as its own LOCAL track, or as the nearest new one that nobody holds.
 void PriorityPerception::LookForReturn(PriorityVehicle& vehicle, Timestamp stamp) {
   const BridgeConfig& config = settings_->priority.bridge;
@@ -85,7 +100,7 @@ void PriorityPerception::LookForReturn(PriorityVehicle& vehicle, Timestamp stamp
       continue;
     }
     const Eigen::Vector2d p_O = track.state_O.mean.head<2>();
-    if (!vehicle.CanReach(p_O, stamp, config)) continue;
+    if (!vehicle.CanReach(p_O, stamp, SeenReach(config))) continue;
     const double speed = std::abs(here.mean[kSpeed]) - std::abs(track.state_O.mean[kSpeed]);
     const double speed_sigma = std::sqrt(track.state_O.covariance(kSpeed, kSpeed));
     if (std::abs(speed) > kReturnSpeed_mps + 2.0 * speed_sigma) continue;

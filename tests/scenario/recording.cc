@@ -127,7 +127,9 @@ Outcome Perceive(const Recording& recording, const std::string& config_path) {
       (is_priority ? outcome.priority_tracks : outcome.local_tracks) += list->num_tracks;
       for (const track_t& track : list->tracks) {
         if (!IsFinite(track)) ++outcome.not_finite;
-        if (is_priority) outcome.vouched.insert(IdOf(track));
+        if (!is_priority) continue;
+        outcome.vouched.insert(IdOf(track));
+        outcome.priority_ids[IdOf(track)].insert(track.id);
       }
     }
   }

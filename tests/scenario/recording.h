@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct Outcome {
   std::int64_t priority_tracks = 0;  ///< The same for TRACKS_PRIORITY.
   std::int64_t not_finite = 0;       ///< Lines with a NaN or infinity in state or covariance.
   std::set<std::uint32_t> vouched;   ///< TemporaryIDs ever listed in TRACKS_PRIORITY.
+  std::map<std::uint32_t, std::set<std::int64_t>> priority_ids;  ///< Of each of those.
   std::vector<std::string> reports;  ///< Checks of MISBEHAVIOR, in order.
 };
 
