@@ -40,7 +40,7 @@ bool IsAnotherTime(Timestamp a, Timestamp b) {
 bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config, Drive& drive,
                std::string& error, const std::function<void(double)>& progress) {
   const wire::InputDecoder decoder(config.perception.vehicle, config.lcm.channels);
-  ReasonCounts dropped{};
+  RefusalTally dropped;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const auto reader = LogReader::Open(logs[i], error);
     if (reader == nullptr) return false;

@@ -52,7 +52,7 @@ bool CollectRemotePairs(const std::vector<std::string>& logs, const DaemonConfig
                         std::vector<RemotePair>& pairs, std::string& error,
                         const std::function<void(double)>& progress) {
   const wire::InputDecoder decoder(config.perception.vehicle, config.lcm.channels);
-  ReasonCounts dropped{};
+  RefusalTally dropped;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const auto reader = LogReader::Open(logs[i], error);
     if (reader == nullptr) return false;

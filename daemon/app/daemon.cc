@@ -30,6 +30,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPopTimeout{20};
 constexpr std::chrono::seconds kHousekeeping{1};
 constexpr milliseconds kStatusAtLatest{1500};  // Where no message comes.
+constexpr int kMostRefusalLines = 20;          // Per second.
 constexpr milliseconds kSuspended{500};        // Between two turns of the loop.
 
 // Arrival on a clock that nobody sets.
@@ -104,7 +105,7 @@ class Daemon {
           if (bytes.size() == size) {
             arrival.content = Arrival::Bytes(bytes.begin(), bytes.end());
           } else {
-            arrival.content = Reason::kTooLarge;
+            arrival.content = Refusal(Reason::kTooLarge);
           }
           if (channel.kind == wire::InputKind::kBsm) {
             queue_.PushBsm(std::move(arrival));
@@ -126,7 +127,7 @@ class Daemon {
       image_to_boxes_.Add(arrival.looked);
       engine_.OnDetections(arrival.channel, *boxes, ArrivalTime(arrival.arrived), outbox_);
     } else {
-      engine_.OnRefused(arrival.channel, std::get<Reason>(arrival.content),
+      engine_.OnRefused(arrival.channel, std::get<Refusal>(arrival.content),
                         ArrivalTime(arrival.arrived));
     }
     step_.Add(Clock::now() - started);
@@ -215,14 +216,22 @@ class Daemon {
                              .notices = Notices()});
   }
 
-  // One line per reason and second at most.
+  // One line per channel, reason and field and second at most, and not too many in one second; the
+  // others have their turn in the next.
   void LogRefusals() {
-    for (std::size_t i = 0; i < kReasonCount; ++i) {
-      const std::uint64_t total = engine_.refusals()[i];
-      if (total == logged_[i]) continue;
-      spdlog::warn("event=refused reason={} count={} total={}", ReasonName(static_cast<Reason>(i)),
-                   total - logged_[i], total);
-      logged_[i] = total;
+    const std::vector<RefusalTable::Row>& rows = engine_.refusal_details();
+    logged_.resize(rows.size(), 0);
+    int lines = 0;
+    for (std::size_t n = 0; n < rows.size() && lines < kMostRefusalLines; ++n) {
+      const std::size_t i = next_refusal_ % rows.size();
+      ++next_refusal_;
+      const RefusalTable::Row& row = rows[i];
+      if (row.count == logged_[i]) continue;
+      spdlog::warn("event=refused channel={} reason={} field=\"{}\" count={} total={}", row.channel,
+                   ReasonName(row.refusal.reason), row.refusal.field, row.count - logged_[i],
+                   row.count);
+      logged_[i] = row.count;
+      ++lines;
     }
     const std::int64_t drops = queue_.own_drops() + queue_.bsm_drops();
     if (drops != logged_drops_) {
@@ -312,7 +321,8 @@ class Daemon {
   LatencyMeter input_to_list_{"input_to_list"};  // From the network: its boxes to the list.
   LatencyMeter image_to_boxes_{"image_to_boxes"};
   DaemonSummary summary_;
-  ReasonCounts logged_{};
+  std::vector<std::uint64_t> logged_;  // Of each row of refusals, what the log has.
+  std::size_t next_refusal_ = 0;
   std::int64_t logged_drops_ = 0;
   int reported_failures_ = 0;
   int reported_v2v_failures_ = 0;

@@ -70,18 +70,18 @@ std::optional<Arrival> DetectThread::NextPicture() {
 }
 
 Arrival::Content DetectThread::Look(const Arrival& picture) {
-  if (const auto* refusal = std::get_if<Reason>(&picture.content)) return *refusal;
+  if (const auto* refusal = std::get_if<Refusal>(&picture.content)) return *refusal;
   const auto* bytes = std::get_if<Arrival::Bytes>(&picture.content);
   const auto channel = decoder_.Find(picture.channel);
   if (bytes == nullptr || !channel) return Reason::kUnknownChannel;
-  ReasonCounts unused{};
+  RefusalTally unused;
   const auto decoded = decoder_.Decode(*channel, *bytes, picture.received, unused);
-  if (!decoded) return decoded.reason();
+  if (!decoded) return decoded.refusal();
   const auto* image = std::get_if<CameraImage>(&*decoded);
   if (image == nullptr || detector_ == nullptr) return Reason::kNoDetector;
   try {
     auto detections = detector_->Detect(*image);
-    if (!detections) return detections.reason();
+    if (!detections) return detections.refusal();
     return std::move(*detections);
   } catch (const std::exception&) {  // A library's way of saying that it cannot read this picture.
     return Reason::kBadImage;

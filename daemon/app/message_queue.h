@@ -20,7 +20,7 @@ namespace v2vouch {
 struct Arrival {
   using Bytes = std::vector<std::uint8_t>;
   /// Bytes as received; what the detector saw; or why a message never got that far.
-  using Content = std::variant<Bytes, CameraDetections, Reason>;
+  using Content = std::variant<Bytes, CameraDetections, Refusal>;
 
   std::string channel;
   Content content;

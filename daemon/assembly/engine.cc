@@ -46,14 +46,18 @@ void Engine::OnMessage(std::string_view channel, std::span<const std::uint8_t> b
                        Timestamp received, Outbox& outbox) {
   has_lists_ = false;
   const auto index = decoder_.Find(channel);
-  if (!index) return Refuse(Reason::kUnknownChannel);
+  if (!index) return Refuse(channel, Reason::kUnknownChannel);
   watch_.Received(*index, received);
-  const auto decoded = decoder_.Decode(*index, bytes, received, refusals_);
-  if (!decoded) return Refuse(decoded.reason());
+  dropped_.Clear();
+  const auto decoded = decoder_.Decode(*index, bytes, received, dropped_);
+  for (const RefusalTally::Entry& entry : dropped_.entries()) {
+    Refuse(*index, entry.refusal, entry.count);
+  }
+  if (!decoded) return Refuse(*index, decoded.refusal());
   if (const auto* input = std::get_if<Input>(&*decoded)) {
     Take(*index, *input, outbox);
   } else {
-    Refuse(Reason::kNoDetector);
+    Refuse(*index, Reason::kNoDetector);
   }
 }
 
@@ -61,7 +65,7 @@ void Engine::OnDetections(std::string_view image_channel, const CameraDetections
                           Timestamp received, Outbox& outbox) {
   has_lists_ = false;
   const auto index = decoder_.Find(image_channel);
-  if (!index) return Refuse(Reason::kUnknownChannel);
+  if (!index) return Refuse(image_channel, Reason::kUnknownChannel);
   watch_.Received(*index, received);
   const CameraConfig& camera =
       config_.perception.vehicle.cameras[static_cast<std::size_t>(detections.camera)];
@@ -70,17 +74,56 @@ void Engine::OnDetections(std::string_view image_channel, const CameraDetections
   Take(*index, detections, outbox);
 }
 
-void Engine::OnRefused(std::string_view channel, Reason reason, Timestamp received) {
+void Engine::OnRefused(std::string_view channel, const Refusal& refusal, Timestamp received) {
   has_lists_ = false;
-  if (const auto index = decoder_.Find(channel)) watch_.Received(*index, received);
-  Refuse(reason);
+  const auto index = decoder_.Find(channel);
+  if (!index) return Refuse(channel, refusal);
+  watch_.Received(*index, received);
+  Refuse(*index, refusal);
+}
+
+void Engine::Refuse(std::string_view channel, const Refusal& refusal, std::uint64_t count) {
+  refusals_[static_cast<std::size_t>(refusal.reason)] += count;
+  refusal_table_.Add(channel, refusal, count);
+}
+
+void Engine::Refuse(std::size_t channel, const Refusal& refusal, std::uint64_t count) {
+  const wire::InputChannel& from = decoder_.channels()[channel];
+  Refuse(from.name, WithField(refusal, from.kind), count);
+}
+
+// A message may bring out the refusal of an earlier one, which it made the core step again.
+std::size_t Engine::ChannelOf(const Diagnostic& diagnostic, std::size_t current) const {
+  if (diagnostic.source == InputSource::kThis) return current;
+  const auto is_kind = [&](wire::InputKind kind) {
+    switch (diagnostic.source) {
+      case InputSource::kEgoMotion:
+        return kind == wire::InputKind::kEgoMotion;
+      case InputSource::kGnss:
+        return kind == wire::InputKind::kGnss;
+      case InputSource::kRadar:
+        return kind == wire::InputKind::kRadar;
+      case InputSource::kCamera:
+        return kind == wire::InputKind::kCameraBoxes || kind == wire::InputKind::kCameraImage;
+      case InputSource::kBsm:
+        return kind == wire::InputKind::kBsm;
+      case InputSource::kThis:
+        break;
+    }
+    return false;
+  };
+  const auto channels = decoder_.channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (is_kind(channels[i].kind) && channels[i].sensor == diagnostic.sensor) return i;
+  }
+  return current;
 }
 
 void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
   perception_.Step(input, outputs_);
   bool is_accepted = true;
   for (const Diagnostic& diagnostic : outputs_.diagnostics) {
-    Refuse(diagnostic.reason);
+    Refuse(ChannelOf(diagnostic, channel), {diagnostic.reason, diagnostic.field});
     if (diagnostic.reason == Reason::kClockRestart) {
       watch_.Restart();
       monitor_.Restart();
@@ -161,6 +204,7 @@ void Engine::PublishStatus(Outbox& outbox) {
   status_.refusals = refusals_;
   status_.refusals[static_cast<std::size_t>(Reason::kImageReplaced)] +=
       static_cast<std::uint64_t>(figures_.images_replaced);
+  status_.refusal_details = refusal_table_.rows();
   status_.queue_drops_own = figures_.queue_drops_own;
   status_.queue_drops_bsm = figures_.queue_drops_bsm;
   status_.kernel_drops = figures_.kernel_drops;

@@ -13,6 +13,7 @@
 #include "daemon/assembly/daemon_config.h"
 #include "daemon/assembly/input_watch.h"
 #include "daemon/assembly/notice_board.h"
+#include "daemon/assembly/refusal_table.h"
 #include "daemon/base/sha256.h"
 #include "daemon/pipeline/perception.h"
 #include "daemon/wire/input_decoder.h"
@@ -73,7 +74,7 @@ class Engine {
   void OnDetections(std::string_view image_channel, const CameraDetections& detections,
                     Timestamp received, Outbox& outbox);
   /// A message refused on its way here, e.g. a picture that gave no detections.
-  void OnRefused(std::string_view channel, Reason reason, Timestamp received);
+  void OnRefused(std::string_view channel, const Refusal& refusal, Timestamp received);
 
   /// Copies of the lists predicted by `silence` past the newest frame, marked stale; in no digest.
   /// Nothing before the first frame.
@@ -93,6 +94,10 @@ class Engine {
   [[nodiscard]] std::span<const wire::InputChannel> channels() const { return decoder_.channels(); }
   [[nodiscard]] const wire::InputDecoder& decoder() const { return decoder_; }
   [[nodiscard]] const ReasonCounts& refusals() const { return refusals_; }
+  /// The same by channel and field.
+  [[nodiscard]] const std::vector<RefusalTable::Row>& refusal_details() const {
+    return refusal_table_.rows();
+  }
   [[nodiscard]] std::int64_t accepted() const { return watch_.accepted(); }
   [[nodiscard]] std::string digest_local() const { return digest_local_.Hex(); }
   [[nodiscard]] std::string digest_priority() const { return digest_priority_.Hex(); }
@@ -108,7 +113,9 @@ class Engine {
   void Monitor(const Input& input);
   void PublishLists(Outbox& outbox);
   void Send(const std::string& channel, Timestamp stamp, Timestamp& newest, Outbox& outbox);
-  void Refuse(Reason reason) { ++refusals_[static_cast<std::size_t>(reason)]; }
+  void Refuse(std::string_view channel, const Refusal& refusal, std::uint64_t count = 1);
+  void Refuse(std::size_t channel, const Refusal& refusal, std::uint64_t count = 1);
+  [[nodiscard]] std::size_t ChannelOf(const Diagnostic& diagnostic, std::size_t current) const;
 
   DaemonConfig config_;
   wire::InputDecoder decoder_;
@@ -118,6 +125,8 @@ class Engine {
   NoticeBoard notices_;
   Outputs outputs_;
   ReasonCounts refusals_{};
+  RefusalTable refusal_table_;
+  RefusalTally dropped_;  // Of the message at hand.
   Sha256 digest_local_;
   Sha256 digest_priority_;
   ShellFigures figures_;

@@ -22,6 +22,7 @@ enum class Reason : std::uint8_t {
   // Content: well-formed, but the values cannot be.
   kNotFinite,
   kOutOfRange,
+  kFieldUnused,  ///< Not a refusal: the message was taken without this figure, which cannot be.
   kUnknownSensor,
   kSensorMismatch,  ///< The sensor named inside is not the one of the channel.
   // Time and order.
@@ -64,6 +65,20 @@ inline constexpr std::size_t kReasonCount = static_cast<std::size_t>(Reason::kCo
 
 /// Snake-case name as published, e.g. "bsm_own_echo".
 std::string_view ReasonName(Reason reason);
+
+/// Why, and on account of which field.
+struct Refusal {
+  Reason reason = Reason::kCount;
+  /// The field's name in its .lcm file, e.g. "speed_mps" or "detections.range_m"; "" = the message
+  /// as a whole. Points at a literal.
+  std::string_view field;
+
+  constexpr Refusal() = default;
+  constexpr Refusal(Reason why, std::string_view where = {})  // NOLINT(google-explicit-constructor)
+      : reason(why), field(where) {}
+  friend bool operator==(const Refusal&, const Refusal&) = default;
+  friend bool operator==(const Refusal& a, Reason b) { return a.reason == b; }
+};
 
 /// One counter per reason.
 using ReasonCounts = std::array<std::uint64_t, kReasonCount>;

@@ -13,8 +13,9 @@ namespace v2vouch {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : content_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
-  Result(Reason reason) : content_(reason) {}      // NOLINT(google-explicit-constructor)
+  Result(T value) : content_(std::move(value)) {}       // NOLINT(google-explicit-constructor)
+  Result(Reason reason) : content_(Refusal(reason)) {}  // NOLINT(google-explicit-constructor)
+  Result(Refusal refusal) : content_(refusal) {}        // NOLINT(google-explicit-constructor)
 
   explicit operator bool() const { return std::holds_alternative<T>(content_); }
   const T& operator*() const { return value(); }
@@ -30,13 +31,15 @@ class [[nodiscard]] Result {
     V2VOUCH_CHECK(*this);
     return *std::get_if<T>(&content_);
   }
-  [[nodiscard]] Reason reason() const {
+  [[nodiscard]] Reason reason() const { return refusal().reason; }
+  /// The reason with the field that it is about.
+  [[nodiscard]] const Refusal& refusal() const {
     V2VOUCH_CHECK(!*this);
-    return *std::get_if<Reason>(&content_);
+    return *std::get_if<Refusal>(&content_);
   }
 
  private:
-  std::variant<T, Reason> content_;
+  std::variant<T, Refusal> content_;
 };
 
 }  // namespace v2vouch

@@ -76,6 +76,7 @@ struct EgoMotion : MessageHeader {
   double speed_mps = 0.0;  ///< Of the rear axle along x; negative in reverse.
   double speed_sigma_mps = 0.1;
   double yaw_rate_radps = 0.0;  ///< Left positive.
+  bool has_yaw_rate = true;     ///< False: unknown; yaw_rate_radps says nothing.
   double yaw_rate_sigma_radps = 0.002;
   std::optional<double> accel_long_mps2;
   std::optional<double> accel_lat_mps2;
@@ -93,9 +94,12 @@ enum class FixType : std::int8_t {
 
 /// Ego GNSS at the antenna. Directions are yaw angles: counter-clockwise from east.
 struct GnssFix : MessageHeader {
-  Wgs84 position;  ///< Height 0 where the receiver had none.
-  Eigen::Matrix3d covariance_enu = Eigen::Matrix3d::Zero();  ///< [m^2], axes east, north, up.
-  std::optional<double> yaw_rad;  ///< Of the body's x axis (dual antenna or the receiver's own fusion).
+  Wgs84 position;
+  bool has_height = true;  ///< False: unknown; position.height_m is 0 and says nothing.
+  /// [m^2], axes east, north, up; a variance of 0 is unknown.
+  Eigen::Matrix3d covariance_enu = Eigen::Matrix3d::Zero();
+  std::optional<double>
+      yaw_rad;  ///< Of the body's x axis (dual antenna or the receiver's own fusion).
   double yaw_sigma_rad = kNaN;
   std::optional<Eigen::Vector2d> velocity_en_mps;  ///< East, north.
   double velocity_sigma_mps = kNaN;
@@ -126,12 +130,13 @@ struct Bsm : MessageHeader {
   std::optional<int> sec_mark_ms;       ///< 0..60999 within the UTC minute.
   std::optional<double> latitude_rad;
   std::optional<double> longitude_rad;
-  std::optional<double> elevation_m;         ///< Above the ellipsoid.
-  std::optional<double> semi_major_m;        ///< 1 sigma.
-  std::optional<double> semi_minor_m;        ///< 1 sigma.
-  std::optional<double> semi_major_yaw_rad;  ///< Direction of semi_major, counter-clockwise from east.
+  std::optional<double> elevation_m;   ///< Above the ellipsoid.
+  std::optional<double> semi_major_m;  ///< 1 sigma.
+  std::optional<double> semi_minor_m;  ///< 1 sigma.
+  std::optional<double>
+      semi_major_yaw_rad;  ///< Direction of semi_major, counter-clockwise from east.
   Transmission transmission = Transmission::kUnavailable;
-  std::optional<double> speed_mps;  ///< Never negative; reverse is in `transmission`.
+  std::optional<double> speed_mps;   ///< Never negative; reverse is in `transmission`.
   std::optional<double> course_rad;  ///< Direction of motion, counter-clockwise from east.
   std::optional<double> accel_long_mps2;
   std::optional<double> accel_lat_mps2;

@@ -48,10 +48,17 @@ struct TrackList {
   std::vector<PublishedTrack> tracks;  ///< Ordered by id.
 };
 
+/// Which input a diagnostic is about.
+enum class InputSource : std::uint8_t { kThis, kEgoMotion, kGnss, kRadar, kCamera, kBsm };
+
 /// A refused input or a dropped track.
 struct Diagnostic {
   Reason reason = Reason::kCount;
   Timestamp stamp{};
+  std::string_view field;  ///< As in Refusal; points at a literal.
+  /// kThis: the input of this step. An earlier one where its refusal came out only now.
+  InputSource source = InputSource::kThis;
+  int sensor = 0;  ///< Index of the radar or camera, where `source` is one.
 };
 
 /// What became of one BSM when it was first heard.
@@ -97,7 +104,9 @@ struct Outputs {
     reports.clear();
     bsm_verdicts.clear();
   }
-  void Refuse(Reason reason, Timestamp stamp) { diagnostics.push_back({reason, stamp}); }
+  void Refuse(const Refusal& refusal, Timestamp stamp) {
+    diagnostics.push_back({refusal.reason, stamp, refusal.field});
+  }
 };
 
 }  // namespace v2vouch

@@ -15,9 +15,9 @@ constexpr std::int64_t kEventsPerProgress = 64;
 
 Result<CameraDetections> Look(const wire::InputDecoder& decoder, std::size_t channel,
                               const LogEvent& event, ObjectDetector& detector) {
-  ReasonCounts unused{};
+  RefusalTally unused;
   const auto decoded = decoder.Decode(channel, event.bytes, event.received, unused);
-  if (!decoded) return decoded.reason();
+  if (!decoded) return decoded.refusal();
   const auto* image = std::get_if<CameraImage>(&*decoded);
   if (image == nullptr) return Reason::kBadImage;
   try {

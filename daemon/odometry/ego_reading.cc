@@ -34,6 +34,8 @@ EgoMotion EgoReading::Read(const EgoMotion& sample) {
   if (speed_.still_s() >= GyroOffset::kSettle_s && !speed_.may_roll()) {
     standstill = speed_.is_seen_standing() ? Standstill::kSeen : Standstill::kWheels;
   }
+  if (!sample.has_yaw_rate)
+    return read;  // Nothing to learn from; the odometry goes on with the last.
   yaw_rate_radps_ = read.yaw_rate_radps;
   if (!config_.learn_gyro_offset) return read;
   read.yaw_rate_radps = gyro_.Read(sample.stamp, sample.yaw_rate_radps, standstill);

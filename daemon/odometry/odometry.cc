@@ -47,12 +47,19 @@ double EgoOdometry::AccelerationFromSpeeds(Timestamp stamp, double speed_mps) co
   return 0.0;
 }
 
+double EgoOdometry::HeldYawRate(Timestamp stamp) const {
+  constexpr double kFade_s = 0.5;
+  if (count_ == 0) return 0.0;
+  const double since_s = std::max(0.0, ToSeconds(stamp - Sample(0).stamp));
+  return Sample(0).yaw_rate_radps * std::exp(-since_s / kFade_s);
+}
+
 void EgoOdometry::OnEgoMotion(const EgoMotion& sample, double gyro_offset_radps,
                               double speed_factor) {
   EgoState next;
   next.stamp = sample.stamp;
   next.speed_mps = sample.speed_mps;
-  next.yaw_rate_radps = sample.yaw_rate_radps;
+  next.yaw_rate_radps = sample.has_yaw_rate ? sample.yaw_rate_radps : HeldYawRate(sample.stamp);
   next.speed_sigma_mps = sample.speed_sigma_mps;
   next.yaw_rate_sigma_radps = sample.yaw_rate_sigma_radps;
   next.gyro_offset_radps = gyro_offset_radps;

@@ -18,7 +18,8 @@ namespace v2vouch {
 /// Constant w and a over a step, integrated exactly. Between two samples: the mean of their yaw
 /// rates, and the acceleration that leads from one speed to the other. Past the newest sample: its
 /// own yaw rate, and its own acceleration; a sensor without one gets the change of speed over the
-/// last 0.2 s or more. Extrapolation never turns braking into reversing.
+/// last 0.2 s or more. An unknown yaw rate is the last one, fading within a second (a car does not
+/// turn for ever). Extrapolation never turns braking into reversing.
 ///
 /// O starts at the first sample (0, 0, 0). Across a gap longer than kMaxGap_s the pose is carried
 /// on by the same rule: O stays continuous, but by a guess. Copyable, fixed size (about 10 kB): a
@@ -50,6 +51,7 @@ class EgoOdometry {
     return history_[(count_ - 1 - age) % kHistory];
   }
   [[nodiscard]] std::size_t held() const { return count_ < kHistory ? count_ : kHistory; }
+  [[nodiscard]] double HeldYawRate(Timestamp stamp) const;
   [[nodiscard]] double AccelerationFromSpeeds(Timestamp stamp, double speed_mps) const;
 
   std::array<EgoState, kHistory> history_{};  // Ring; sample n at n % kHistory.

@@ -41,6 +41,13 @@ constexpr std::size_t kLongestRun = 64;
 
 // Late claims that may wait for the next frame, at most: frames may fail to come.
 constexpr int kMostWaiting = 256;
+void NameSource(const EventKey& key, Diagnostic& diagnostic) {
+  constexpr InputSource kSources[] = {InputSource::kEgoMotion, InputSource::kGnss,
+                                      InputSource::kRadar, InputSource::kCamera, InputSource::kBsm};
+  diagnostic.source = kSources[key.rank];
+  const bool is_sensor = key.rank == kRadarRank || key.rank == kCameraRank;
+  diagnostic.sensor = is_sensor ? static_cast<int>(key.channel) : 0;
+}
 
 bool InsertOnce(std::vector<std::uint64_t>& set, std::uint64_t value) {
   if (std::find(set.begin(), set.end(), value) != set.end()) return false;
@@ -290,7 +297,9 @@ int Timeline::RunPriority(std::size_t from, Outputs& outputs) {
 void Timeline::EmitOnce(Event& event, const Outputs& step, Outputs& outputs) {
   for (const Diagnostic& diagnostic : step.diagnostics) {
     const auto hash = Hash(ReasonName(diagnostic.reason), 0);
-    if (InsertOnce(event.emitted, hash)) outputs.diagnostics.push_back(diagnostic);
+    if (!InsertOnce(event.emitted, hash)) continue;
+    outputs.diagnostics.push_back(diagnostic);
+    NameSource(event.key, outputs.diagnostics.back());
   }
   // A late frame may move the same verdict to another moment, or let another check come first.
   const double buffer_s = config_.timeline.replay_buffer_s;

@@ -170,6 +170,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
   result.accepted = engine.accepted();
   result.refused = engine.refusals();
   result.verdict = JudgeChannels(result.channels, result.lists, config);
+  result.refusal_details = engine.refusal_details();
   result.digest_local = engine.digest_local();
   result.digest_priority = engine.digest_priority();
   return !writer || writer->Close(error);

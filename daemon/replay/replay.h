@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/assembly/daemon_config.h"
+#include "daemon/assembly/refusal_table.h"
 #include "daemon/base/reason.h"
 #include "daemon/replay/channel_table.h"
 #include "daemon/wire/status.h"
@@ -38,6 +39,7 @@ struct ReplayResult {
   std::vector<ReplayedNotice> notices;  ///< In order of their first beginning.
   ChannelTable channels;
   LogVerdict verdict;
+  std::vector<RefusalTable::Row> refusal_details;  ///< By channel, reason and field.
   std::string digest_local;
   std::string digest_priority;
 
@@ -60,6 +62,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& c
 /// {"events":..,"log_seconds":..,"wall_seconds":..,"realtime_factor":..,
 ///  "step_us":{"p50":..,"p99":..,"max":..},"refused":{"REASON":n,...},
 ///  "notices":[{"name":..,"channel":..,"value":..,"since_utime":..,"times":..},...],
+///  "refusal_details":[{"channel":"..","reason":"..","field":"..","count":n},...],
 ///  "digest_local":"...","digest_priority":"...", and the other counts}
 std::string JsonReport(const ReplayResult& result);
 

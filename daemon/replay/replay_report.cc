@@ -71,6 +71,13 @@ std::string JsonReport(const ReplayResult& result) {
     }
     channels[name] = std::move(of_channel);
   }
+  nlohmann::ordered_json details = nlohmann::ordered_json::array();
+  for (const RefusalTable::Row& row : result.refusal_details) {
+    details.push_back({{"channel", row.channel},
+                       {"reason", ReasonName(row.refusal.reason)},
+                       {"field", row.refusal.field},
+                       {"count", row.count}});
+  }
   const nlohmann::ordered_json report = {
       {"events", result.events},
       {"inputs", result.inputs},
@@ -89,6 +96,7 @@ std::string JsonReport(const ReplayResult& result) {
       {"channels", channels},
       {"problems", result.verdict.problems},
       {"notes", result.verdict.notes},
+      {"refusal_details", details},
       {"digest_local", result.digest_local},
       {"digest_priority", result.digest_priority}};
   return report.dump() + "\n";
@@ -118,6 +126,13 @@ std::string TextReport(const ReplayResult& result) {
     if (result.refused[i] == 0) continue;
     text += CountLine("refused " + std::string(ReasonName(static_cast<Reason>(i))),
                       static_cast<std::int64_t>(result.refused[i]));
+    for (const RefusalTable::Row& row : result.refusal_details) {
+      if (row.refusal.reason != static_cast<Reason>(i)) continue;
+      const std::string field =
+          row.refusal.field.empty() ? "message" : std::string(row.refusal.field);
+      text += CountLine("  " + (row.channel.empty() ? "(others)" : row.channel) + " " + field,
+                        static_cast<std::int64_t>(row.count));
+    }
   }
   for (const ReplayedNotice& each : result.notices) {
     char value[32];

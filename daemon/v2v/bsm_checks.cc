@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "daemon/base/angle.h"
 
@@ -23,22 +25,37 @@ bool IsFinite(const std::optional<double>& value) { return !value || std::isfini
 
 }  // namespace
 
-std::optional<Reason> ContentProblem(const Bsm& bsm) {
-  if (bsm.signature == SignatureState::kInvalid) return Reason::kBsmSignature;
-  if (!bsm.latitude_rad || !bsm.longitude_rad || !bsm.speed_mps) return Reason::kBsmUnavailable;
-  for (const auto* value :
-       {&bsm.latitude_rad, &bsm.longitude_rad, &bsm.elevation_m, &bsm.semi_major_m, &bsm.speed_mps,
-        &bsm.course_rad, &bsm.accel_long_mps2, &bsm.accel_lat_mps2, &bsm.yaw_rate_radps,
-        &bsm.length_m, &bsm.width_m}) {
-    if (!IsFinite(*value)) return Reason::kNotFinite;
+std::optional<Refusal> ContentProblem(const Bsm& bsm) {
+  const auto refuse = [](Reason reason, std::string_view field) { return Refusal{reason, field}; };
+  if (bsm.signature == SignatureState::kInvalid) {
+    return refuse(Reason::kBsmSignature, "signature_state");
   }
-  if (std::abs(*bsm.latitude_rad) > kPi / 2.0 || std::abs(*bsm.longitude_rad) > 2.0 * kPi) {
-    return Reason::kBsmRange;
+  if (!bsm.latitude_rad) return refuse(Reason::kBsmUnavailable, "lat");
+  if (!bsm.longitude_rad) return refuse(Reason::kBsmUnavailable, "long_");
+  if (!bsm.speed_mps) return refuse(Reason::kBsmUnavailable, "speed");
+  const std::pair<const std::optional<double>*, std::string_view> figures[] = {
+      {&bsm.latitude_rad, "lat"},
+      {&bsm.longitude_rad, "long_"},
+      {&bsm.elevation_m, "elev"},
+      {&bsm.semi_major_m, "semiMajor"},
+      {&bsm.speed_mps, "speed"},
+      {&bsm.course_rad, "heading"},
+      {&bsm.accel_long_mps2, "accelSet_long"},
+      {&bsm.accel_lat_mps2, "accelSet_lat"},
+      {&bsm.yaw_rate_radps, "accelSet_yaw"},
+      {&bsm.length_m, "length"},
+      {&bsm.width_m, "width"}};
+  for (const auto& [value, field] : figures) {
+    if (!IsFinite(*value)) return refuse(Reason::kNotFinite, field);
   }
-  if (std::abs(*bsm.speed_mps) > kMaxSpeed_mps ||
-      std::abs(bsm.accel_long_mps2.value_or(0.0)) > kMaxAccel_mps2 ||
-      std::abs(bsm.accel_lat_mps2.value_or(0.0)) > kMaxLateralAccel_mps2) {
-    return Reason::kBsmImplausible;
+  if (std::abs(*bsm.latitude_rad) > kPi / 2.0) return refuse(Reason::kBsmRange, "lat");
+  if (std::abs(*bsm.longitude_rad) > 2.0 * kPi) return refuse(Reason::kBsmRange, "long_");
+  if (std::abs(*bsm.speed_mps) > kMaxSpeed_mps) return refuse(Reason::kBsmImplausible, "speed");
+  if (std::abs(bsm.accel_long_mps2.value_or(0.0)) > kMaxAccel_mps2) {
+    return refuse(Reason::kBsmImplausible, "accelSet_long");
+  }
+  if (std::abs(bsm.accel_lat_mps2.value_or(0.0)) > kMaxLateralAccel_mps2) {
+    return refuse(Reason::kBsmImplausible, "accelSet_lat");
   }
   return std::nullopt;
 }

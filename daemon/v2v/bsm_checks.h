@@ -11,7 +11,7 @@
 namespace v2vouch {
 
 /// What a BSM lacks or says that cannot be, by itself. nullopt: nothing.
-std::optional<Reason> ContentProblem(const Bsm& bsm);
+std::optional<Refusal> ContentProblem(const Bsm& bsm);
 
 /// Reception minus claimed time of the place [s]; negative where it is from the future. secMark is
 /// the time of the place and names a millisecond within some minute: the one nearest to

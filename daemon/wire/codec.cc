@@ -48,7 +48,7 @@ bool LengthsFit(const misbehavior_report_t& m) { return Fits(m.num_evidence, m.e
 bool LengthsFit(const radar_scan_t& m) { return Fits(m.num_detections, m.detections); }
 bool LengthsFit(const daemon_status_t& m) {
   return Fits(m.num_inputs, m.inputs) && Fits(m.num_refusals, m.refusals) &&
-         Fits(m.num_latencies, m.latencies);
+         Fits(m.num_refusal_details, m.refusal_details) && Fits(m.num_latencies, m.latencies);
 }
 bool LengthsFit(const track_list_t& m) {
   return Fits(m.num_sectors, m.sectors) && Fits(m.num_tracks, m.tracks);

@@ -5,6 +5,7 @@
 
 #include "daemon/wire/bsm_conversion.h"
 #include "daemon/wire/codec.h"
+#include "daemon/wire/field_judge.h"
 #include "daemon/wire/sensor_conversion.h"
 #include "v2vouch/camera_image_t.hpp"
 
@@ -17,7 +18,7 @@ constexpr int kMaxImageSide_px = 16384;
 
 template <class T>
 Result<InputDecoder::Decoded> AsInput(Result<T> result) {
-  if (!result) return result.reason();
+  if (!result) return result.refusal();
   return InputDecoder::Decoded(Input(std::move(*result)));
 }
 
@@ -30,29 +31,37 @@ std::optional<ImageEncoding> EncodingOf(const std::string& name) {
 
 Result<CameraImage> ImageFromWire(camera_image_t&& message, const CameraConfig& camera, int index,
                                   Timestamp received) {
-  if (message.sensor != camera.name) return Reason::kSensorMismatch;
-  if (!IsPlausibleTime(message.utime) || message.seq < 0) return Reason::kOutOfRange;
-  const auto encoding = EncodingOf(message.encoding);
-  const bool has_size = message.width_px >= 1 && message.width_px <= kMaxImageSide_px &&
-                        message.height_px >= 1 && message.height_px <= kMaxImageSide_px;
-  if (!encoding || !has_size || message.data.empty()) return Reason::kBadImage;
-  // Pixels of another resolution than the intrinsics are for would mean other angles.
-  if (message.width_px != camera.image_width_px || message.height_px != camera.image_height_px) {
-    return Reason::kOutOfRange;
+  if (!message.sensor.empty() && message.sensor != camera.name) {
+    return Refusal{Reason::kSensorMismatch, "sensor"};
   }
+  if (const auto fault = TimeFault(message.utime, received); !fault.empty()) {
+    return Refusal{Reason::kOutOfRange, fault};
+  }
+  const auto encoding = EncodingOf(message.encoding);
+  if (!encoding) return Refusal{Reason::kBadImage, "encoding"};
+  if (message.data.empty()) return Refusal{Reason::kBadImage, "data"};
+  const auto is_side = [](int side_px) { return side_px >= 0 && side_px <= kMaxImageSide_px; };
+  if (!is_side(message.width_px)) return Refusal{Reason::kBadImage, "width_px"};
+  if (!is_side(message.height_px)) return Refusal{Reason::kBadImage, "height_px"};
+  // Pixels of another resolution than the intrinsics are for would mean other angles. A driver that
+  // does not know its own says 0.
+  const int width_px = message.width_px == 0 ? camera.image_width_px : message.width_px;
+  const int height_px = message.height_px == 0 ? camera.image_height_px : message.height_px;
+  if (width_px != camera.image_width_px) return Refusal{Reason::kOutOfRange, "width_px"};
+  if (height_px != camera.image_height_px) return Refusal{Reason::kOutOfRange, "height_px"};
   const std::size_t pixels =
-      static_cast<std::size_t>(message.width_px) * static_cast<std::size_t>(message.height_px);
+      static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
   const std::size_t bytes_per_pixel = *encoding == ImageEncoding::kBgr8 ? 3 : 1;
   if (*encoding != ImageEncoding::kJpeg && message.data.size() != pixels * bytes_per_pixel) {
-    return Reason::kBadImage;
+    return Refusal{Reason::kBadImage, "data"};
   }
   CameraImage image;
   image.stamp = FromMicros(message.utime) + FromSeconds(camera.clock_offset_s);
   image.received = received;
-  image.seq = message.seq;
+  image.seq = SafeSeq(message.seq);
   image.camera = index;
-  image.width_px = message.width_px;
-  image.height_px = message.height_px;
+  image.width_px = width_px;
+  image.height_px = height_px;
   image.encoding = *encoding;
   image.bytes = std::move(message.data);
   return image;
@@ -99,42 +108,42 @@ std::optional<std::size_t> InputDecoder::Find(std::string_view channel) const {
 Result<InputDecoder::Decoded> InputDecoder::Decode(std::size_t channel,
                                                    std::span<const std::uint8_t> bytes,
                                                    Timestamp received,
-                                                   ReasonCounts& dropped) const {
+                                                   RefusalTally& dropped) const {
   const InputChannel& from = channels_[channel];
   const auto sensor = static_cast<std::size_t>(from.sensor);
   switch (from.kind) {
     case InputKind::kRadar: {
       const auto message = wire::Decode<radar_scan_t>(bytes);
-      if (!message) return message.reason();
+      if (!message) return message.refusal();
       return AsInput(FromWire(*message, vehicle_.radars[sensor], from.sensor, received, dropped));
     }
     case InputKind::kCameraBoxes: {
       const auto message = wire::Decode<camera_detections_t>(bytes);
-      if (!message) return message.reason();
+      if (!message) return message.refusal();
       return AsInput(FromWire(*message, vehicle_.cameras[sensor], from.sensor, received, dropped));
     }
     case InputKind::kCameraImage: {
       auto message = wire::Decode<camera_image_t>(bytes);
-      if (!message) return message.reason();
+      if (!message) return message.refusal();
       auto image =
           ImageFromWire(std::move(*message), vehicle_.cameras[sensor], from.sensor, received);
-      if (!image) return image.reason();
+      if (!image) return image.refusal();
       return Decoded(std::move(*image));
     }
     case InputKind::kEgoMotion: {
       const auto message = wire::Decode<ego_motion_t>(bytes);
-      if (!message) return message.reason();
-      return AsInput(FromWire(*message, vehicle_, received));
+      if (!message) return message.refusal();
+      return AsInput(FromWire(*message, vehicle_, received, dropped));
     }
     case InputKind::kGnss: {
       const auto message = wire::Decode<gnss_fix_t>(bytes);
-      if (!message) return message.reason();
-      return AsInput(FromWire(*message, vehicle_, received));
+      if (!message) return message.refusal();
+      return AsInput(FromWire(*message, vehicle_, received, dropped));
     }
     case InputKind::kBsm: {
       const auto message = wire::Decode<bsm_t>(bytes);
-      if (!message) return message.reason();
-      return AsInput(FromWire(*message, received));
+      if (!message) return message.refusal();
+      return AsInput(FromWire(*message, received, dropped));
     }
   }
   return Reason::kUnknownChannel;

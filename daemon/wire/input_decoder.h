@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "daemon/base/refusal_tally.h"
 #include "daemon/base/result.h"
 #include "daemon/data/camera_image.h"
 #include "daemon/data/input.h"
@@ -44,9 +45,10 @@ class InputDecoder {
   [[nodiscard]] std::optional<std::size_t> Find(std::string_view channel) const;
 
   using Decoded = std::variant<Input, CameraImage>;
-  /// `dropped` counts detections and boxes left out of a message that was taken.
+  /// `dropped` counts detections and boxes left out of a message that was taken, and figures that
+  /// were left unused (kFieldUnused), by field.
   Result<Decoded> Decode(std::size_t channel, std::span<const std::uint8_t> bytes,
-                         Timestamp received, ReasonCounts& dropped) const;
+                         Timestamp received, RefusalTally& dropped) const;
 
  private:
   VehicleConfig vehicle_;

@@ -22,6 +22,7 @@
 #include "v2vouch/notice_t.hpp"
 #include "v2vouch/radar_detection_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
+#include "v2vouch/refusal_t.hpp"
 #include "v2vouch/sector_health_t.hpp"
 #include "v2vouch/sender_bias_t.hpp"
 #include "v2vouch/stage_latency_t.hpp"
@@ -199,6 +200,14 @@ constexpr Field kNoticeFields[] = {
 };
 constexpr Layout kNotice = MakeLayout("notice_t", kNoticeFields);
 
+constexpr Field kRefusalFields[] = {
+    {.name = "channel", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "reason", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "field", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "count", .kind = Kind::kInt64},
+};
+constexpr Layout kRefusal = MakeLayout("refusal_t", kRefusalFields);
+
 constexpr Field kDaemonStatusFields[] = {
     {.name = "utime", .kind = Kind::kInt64},
     {.name = "seq", .kind = Kind::kInt64},
@@ -208,6 +217,8 @@ constexpr Field kDaemonStatusFields[] = {
     {.name = "inputs", .kind = Kind::kStruct, .type = &kInputStatus, .max_count = 256},
     {.name = "num_refusals", .kind = Kind::kInt32},
     {.name = "refusals", .kind = Kind::kStruct, .type = &kCount, .max_count = 256},
+    {.name = "num_refusal_details", .kind = Kind::kInt32},
+    {.name = "refusal_details", .kind = Kind::kStruct, .type = &kRefusal, .max_count = 256},
     {.name = "queue_drops_own", .kind = Kind::kInt64},
     {.name = "queue_drops_bsm", .kind = Kind::kInt64},
     {.name = "kernel_drops", .kind = Kind::kInt64},
@@ -473,6 +484,7 @@ V2VOUCH_LAYOUT(notice_t, kNotice)
 V2VOUCH_LAYOUT(misbehavior_report_t, kMisbehaviorReport)
 V2VOUCH_LAYOUT(radar_detection_t, kRadarDetection)
 V2VOUCH_LAYOUT(radar_scan_t, kRadarScan)
+V2VOUCH_LAYOUT(refusal_t, kRefusal)
 V2VOUCH_LAYOUT(sector_health_t, kSectorHealth)
 V2VOUCH_LAYOUT(sender_bias_t, kSenderBias)
 V2VOUCH_LAYOUT(text_t, kText)

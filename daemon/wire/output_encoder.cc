@@ -231,6 +231,15 @@ void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes) {
     to.refusals.push_back(count);
   }
   SetCount(to.num_refusals, to.refusals);
+  for (const RefusalDetail& from : status.refusal_details) {
+    refusal_t detail{};
+    detail.channel = Name(from.channel);
+    detail.reason = Name(ReasonName(from.refusal.reason));
+    detail.field = Name(from.refusal.field);
+    detail.count = static_cast<std::int64_t>(from.count);
+    to.refusal_details.push_back(detail);
+  }
+  SetCount(to.num_refusal_details, to.refusal_details);
   to.queue_drops_own = status.queue_drops_own;
   to.queue_drops_bsm = status.queue_drops_bsm;
   to.kernel_drops = status.kernel_drops;

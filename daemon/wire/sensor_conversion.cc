@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/wire/sensor_conversion.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "daemon/base/angle.h"
 #include "daemon/data/object_class.h"
+#include "daemon/wire/field_judge.h"
 
 namespace v2vouch::wire {
 namespace {
@@ -21,42 +25,37 @@ constexpr double kMaxYawRate_radps = 10.0;
 constexpr double kMaxAccel_mps2 = 100.0;
 constexpr double kMaxSigma = 1000.0;
 constexpr double kMaxPixel = 1e5;
+constexpr double kMinAltitude_m = -1000.0;
 constexpr double kMaxAltitude_m = 20000.0;
-
-// Collects the first fault of a message; later checks of the same message are then of no matter.
-class Judge {
- public:
-  Judge& InRange(double value, double low, double high) {
-    if (!reason_ && !std::isfinite(value)) reason_ = Reason::kNotFinite;
-    if (!reason_ && (value < low || value > high)) reason_ = Reason::kOutOfRange;
-    return *this;
-  }
-  Judge& NaNOrInRange(double value, double low, double high) {
-    return std::isnan(value) ? *this : InRange(value, low, high);
-  }
-  Judge& Sigma(double value) {
-    if (!reason_ && std::isfinite(value) && value <= 0.0) reason_ = Reason::kOutOfRange;
-    return InRange(value, 0.0, kMaxSigma);
-  }
-  Judge& Holds(bool condition, Reason otherwise) {
-    if (!reason_ && !condition) reason_ = otherwise;
-    return *this;
-  }
-  [[nodiscard]] std::optional<Reason> reason() const { return reason_; }
-
- private:
-  std::optional<Reason> reason_;
-};
-
-void Count(ReasonCounts& counts, Reason reason) { ++counts[static_cast<std::size_t>(reason)]; }
-
-std::optional<double> Available(double value) {
-  return std::isnan(value) ? std::nullopt : std::optional(value);
-}
+constexpr double kMaxVariance_m2 = 1e12;
+// Angles may be counted from -pi to pi or from 0 to 2 pi, in single precision.
+constexpr double kTurn_rad = 2.0 * kPi + 1e-5;
+constexpr double kScoreRounding = 0.01;
+// An uncertain yaw rate: a car that may be turning [rad/s].
+constexpr double kUnknownYawRateSigma_radps = 0.1;
+// A fix nearer to 0 N 0 E than this (0.6 m) was never measured: that is what receivers send who
+// have none yet.
+constexpr double kNullIsland_rad = 1e-7;
 
 template <class Message>
 MessageHeader Header(const Message& message, double clock_offset_s, Timestamp received) {
-  return {FromMicros(message.utime) + FromSeconds(clock_offset_s), received, message.seq};
+  return {FromMicros(message.utime) + FromSeconds(clock_offset_s), received, SafeSeq(message.seq)};
+}
+
+template <class Message>
+void JudgeTime(const Message& message, Timestamp received, FieldJudge& judge) {
+  if (const auto fault = TimeFault(message.utime, received); !fault.empty()) {
+    judge.Fail({Reason::kOutOfRange, fault});
+  }
+}
+
+// The channel says which sensor speaks; a driver may leave the name inside empty.
+void JudgeSensor(const std::string& name, const std::string& configured, FieldJudge& judge) {
+  judge.Need(name.empty() || name == configured, {Reason::kSensorMismatch, "sensor"});
+}
+
+bool LooksLikeDegrees(double angle) {
+  return std::abs(angle) > kTurn_rad && std::abs(angle) <= 360.0;
 }
 
 // What detectors trained on COCO call them.
@@ -65,26 +64,80 @@ constexpr std::pair<std::string_view, ObjectClass> kOtherNames[] = {
     {"person", ObjectClass::kPedestrian},
     {"bicycle", ObjectClass::kCyclist}};
 
-}  // namespace
-
-bool IsPlausibleTime(std::int64_t utime) {
-  constexpr std::int64_t kYear2200 = 7'258'118'400'000'000;
-  return utime > 0 && utime < kYear2200;
+// A box without a score, or with 0, was published all the same: its detector is sure enough.
+double Score(double score, FieldJudge& judge) {
+  if (std::isnan(score) || score == 0.0) return 1.0;
+  if (score > 0.0 && score <= 1.0 + kScoreRounding) return std::min(score, 1.0);
+  if (score > 1.0 && score <= 100.0) {
+    judge.Unused("boxes.score looks like percent");
+    return score / 100.0;
+  }
+  judge.Unused("boxes.score");
+  return 1.0;
 }
 
-ObjectClass ClassOfName(std::string_view name) {
-  for (const auto& [known, object_class] : kOtherNames) {
-    if (known == name) return object_class;
+FixType FixTypeOf(int raw, FieldJudge& judge) {
+  if (raw >= 2 && raw <= 6) return static_cast<FixType>(raw);
+  judge.Unused("fix_type");
+  return FixType::k2d;  // There is a place; nothing more is sure.
+}
+
+// Whatever is no variance (NaN, 0, below 0, as drivers send where they do not know) stays 0, which
+// is "unknown" further on; where only one of the two horizontal axes is known it goes for both.
+// Correlations that cannot be count as none. nullopt: says that the place is worth nothing.
+std::optional<Eigen::Matrix3d> Covariance(const double (&raw)[9], FieldJudge& judge) {
+  constexpr std::string_view kField = "covariance_enu_m2";
+  Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
+  bool is_odd = false;
+  for (int i = 0; i < 3; ++i) {
+    const double variance = raw[i * 3 + i];
+    if (variance > kMaxVariance_m2 && i < 2) {
+      judge.Fail({Reason::kGnssUnusable, kField});
+      return std::nullopt;
+    }
+    const bool is_variance = variance > 0.0 && variance <= kMaxVariance_m2;
+    P(i, i) = is_variance ? variance : 0.0;
+    is_odd = is_odd || variance < 0.0;
   }
-  return ObjectClassOf(name).value_or(ObjectClass::kUnknown);
+  if (P(0, 0) == 0.0) P(0, 0) = P(1, 1);
+  if (P(1, 1) == 0.0) P(1, 1) = P(0, 0);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const double upper = raw[j * 3 + i];
+      const double lower = raw[i * 3 + j];
+      if (std::isnan(upper) || std::isnan(lower)) continue;
+      const double scale = P(i, i) * P(j, j);
+      const double mean = 0.5 * (upper + lower);
+      const bool is_symmetric = std::abs(upper - lower) <= 1e-6 * (1.0 + std::sqrt(scale));
+      if (is_symmetric && mean * mean <= scale * (1.0 + 1e-6)) {
+        P(i, j) = P(j, i) = mean;
+      } else if (scale > 0.0) {
+        is_odd = true;
+      }
+    }
+  }
+  if (is_odd) judge.Unused(kField);
+  return P;
+}
+
+}  // namespace
+
+ObjectClass ClassOfName(std::string_view name) {
+  std::string lower(name);
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto& [known, object_class] : kOtherNames) {
+    if (known == lower) return object_class;
+  }
+  return ObjectClassOf(lower).value_or(ObjectClass::kUnknown);
 }
 
 Result<RadarScan> FromWire(const radar_scan_t& message, const RadarConfig& radar, int index,
-                           Timestamp received, ReasonCounts& dropped) {
-  Judge judge;
-  judge.Holds(message.sensor == radar.name, Reason::kSensorMismatch)
-      .Holds(IsPlausibleTime(message.utime) && message.seq >= 0, Reason::kOutOfRange);
-  if (judge.reason()) return *judge.reason();
+                           Timestamp received, RefusalTally& dropped) {
+  FieldJudge judge(dropped);
+  JudgeSensor(message.sensor, radar.name, judge);
+  JudgeTime(message, received, judge);
+  if (judge.refusal()) return *judge.refusal();
 
   RadarScan scan;
   static_cast<MessageHeader&>(scan) = Header(message, radar.clock_offset_s, received);
@@ -92,57 +145,61 @@ Result<RadarScan> FromWire(const radar_scan_t& message, const RadarConfig& radar
   scan.detections.reserve(message.detections.size());
   for (const radar_detection_t& from : message.detections) {
     const double range_m = from.range_m + radar.range_offset_m;
-    Judge each;
-    each.InRange(range_m, 0.0, kMaxRange_m)
-        .Holds(range_m > 0.0, Reason::kOutOfRange)
-        .InRange(from.azimuth_rad, -kPi - 1e-9, kPi + 1e-9)
-        .InRange(from.range_rate_mps, -kMaxRangeRate_mps, kMaxRangeRate_mps)
-        .NaNOrInRange(from.rcs_dbsm, -200.0, 200.0)
-        .NaNOrInRange(from.snr_db, -200.0, 300.0)
-        .Holds(from.track_id >= -1, Reason::kOutOfRange);
-    if (each.reason()) {
-      Count(dropped, *each.reason());
+    FieldJudge each(dropped);
+    each.Need(range_m, 0.0, kMaxRange_m, "detections.range_m");
+    each.Need(range_m > 0.0, {Reason::kOutOfRange, "detections.range_m"});
+    each.Need(from.azimuth_rad, -kTurn_rad, kTurn_rad,
+              LooksLikeDegrees(from.azimuth_rad) ? "detections.azimuth_rad looks like degrees"
+                                                 : "detections.azimuth_rad");
+    each.Need(from.range_rate_mps, -kMaxRangeRate_mps, kMaxRangeRate_mps,
+              "detections.range_rate_mps");
+    if (each.refusal()) {
+      dropped.Add(*each.refusal());
       continue;
     }
     scan.detections.push_back({
         .range_m = range_m,
         .azimuth_rad = WrapAngle(radar.flip_azimuth ? -from.azimuth_rad : from.azimuth_rad),
         .range_rate_mps = radar.flip_range_rate ? -from.range_rate_mps : from.range_rate_mps,
-        .rcs_dbsm = from.rcs_dbsm,
-        .snr_db = from.snr_db,
-        .track_id = from.track_id,
+        .rcs_dbsm =
+            each.Optional(from.rcs_dbsm, -200.0, 200.0, "detections.rcs_dbsm").value_or(kNaN),
+        .snr_db = each.Optional(from.snr_db, -200.0, 300.0, "detections.snr_db").value_or(kNaN),
+        .track_id = std::max(from.track_id, -1),
     });
   }
   return scan;
 }
 
 Result<CameraDetections> FromWire(const camera_detections_t& message, const CameraConfig& camera,
-                                  int index, Timestamp received, ReasonCounts& dropped) {
-  // Pixels of another resolution than the intrinsics are for would mean other angles.
-  const bool has_size = message.image_width_px == camera.image_width_px &&
-                        message.image_height_px == camera.image_height_px;
-  Judge judge;
-  judge.Holds(message.sensor == camera.name, Reason::kSensorMismatch)
-      .Holds(IsPlausibleTime(message.utime) && message.seq >= 0, Reason::kOutOfRange)
-      .Holds(has_size, Reason::kOutOfRange);
-  if (judge.reason()) return *judge.reason();
+                                  int index, Timestamp received, RefusalTally& dropped) {
+  FieldJudge judge(dropped);
+  JudgeSensor(message.sensor, camera.name, judge);
+  JudgeTime(message, received, judge);
+  // Pixels of another resolution than the intrinsics are for would mean other angles. A driver that
+  // does not know its own says 0.
+  const auto is_size = [](int said, int configured) { return said == 0 || said == configured; };
+  judge.Need(is_size(message.image_width_px, camera.image_width_px),
+             {Reason::kOutOfRange, "image_width_px"});
+  judge.Need(is_size(message.image_height_px, camera.image_height_px),
+             {Reason::kOutOfRange, "image_height_px"});
+  if (judge.refusal()) return *judge.refusal();
 
   CameraDetections detections;
   static_cast<MessageHeader&>(detections) = Header(message, camera.clock_offset_s, received);
   detections.camera = index;
-  detections.image_width_px = message.image_width_px;
-  detections.image_height_px = message.image_height_px;
+  detections.image_width_px = camera.image_width_px;
+  detections.image_height_px = camera.image_height_px;
   detections.boxes.reserve(message.boxes.size());
   for (const camera_box_t& from : message.boxes) {
-    Judge each;
-    each.InRange(from.left_px, -kMaxPixel, kMaxPixel)
-        .InRange(from.top_px, -kMaxPixel, kMaxPixel)
-        .InRange(from.width_px, 0.0, kMaxPixel)
-        .InRange(from.height_px, 0.0, kMaxPixel)
-        .Holds(from.width_px > 0.0 && from.height_px > 0.0, Reason::kOutOfRange)
-        .InRange(from.score, 0.0, 1.0);
-    if (each.reason()) {
-      Count(dropped, *each.reason());
+    FieldJudge each(dropped);
+    each.Need(from.left_px, -kMaxPixel, kMaxPixel, "boxes.left_px");
+    each.Need(from.top_px, -kMaxPixel, kMaxPixel, "boxes.top_px");
+    each.Need(from.width_px, 0.0, kMaxPixel, "boxes.width_px");
+    each.Need(from.width_px > 0.0, {Reason::kOutOfRange, "boxes.width_px"});
+    each.Need(from.height_px, 0.0, kMaxPixel, "boxes.height_px");
+    each.Need(from.height_px > 0.0, {Reason::kOutOfRange, "boxes.height_px"});
+    if (each.refusal()) {
+      dropped.Add(*each.refusal());
       continue;
     }
     detections.boxes.push_back({
@@ -151,94 +208,97 @@ Result<CameraDetections> FromWire(const camera_detections_t& message, const Came
         .width_px = from.width_px,
         .height_px = from.height_px,
         .object_class = ClassOfName(from.class_name),
-        .score = from.score,
+        .score = Score(from.score, each),
     });
   }
   return detections;
 }
 
 Result<EgoMotion> FromWire(const ego_motion_t& message, const VehicleConfig& vehicle,
-                           Timestamp received) {
-  const int gear = message.gear;
-  const bool has_accel = !std::isnan(message.accel_long_mps2);
-  const bool has_lateral = !std::isnan(message.accel_lat_mps2);
-  Judge judge;
-  judge.Holds(IsPlausibleTime(message.utime) && message.seq >= 0, Reason::kOutOfRange)
-      .InRange(message.speed_mps, -kMaxSpeed_mps, kMaxSpeed_mps)
-      .Sigma(message.speed_sigma_mps)
-      .InRange(message.yaw_rate_radps, -kMaxYawRate_radps, kMaxYawRate_radps)
-      .Sigma(message.yaw_rate_sigma_radps)
-      .Holds((gear >= 0 && gear <= 3) || gear == 7, Reason::kOutOfRange);
-  if (has_accel) judge.InRange(message.accel_long_mps2, -kMaxAccel_mps2, kMaxAccel_mps2);
-  if (has_lateral) judge.InRange(message.accel_lat_mps2, -kMaxAccel_mps2, kMaxAccel_mps2);
-  if (judge.reason()) return *judge.reason();
+                           Timestamp received, RefusalTally& unused) {
+  FieldJudge judge(unused);
+  JudgeTime(message, received, judge);
+  judge.Need(message.speed_mps, -kMaxSpeed_mps, kMaxSpeed_mps, "speed_mps");
+  if (judge.refusal()) return *judge.refusal();
 
   EgoMotion ego;
   static_cast<MessageHeader&>(ego) = Header(message, 0.0, received);
   ego.speed_mps = message.speed_mps / vehicle.speed_scale;
-  ego.speed_sigma_mps = message.speed_sigma_mps / vehicle.speed_scale;
-  ego.yaw_rate_radps = message.yaw_rate_radps - vehicle.yaw_rate_bias_radps;
-  ego.yaw_rate_sigma_radps = message.yaw_rate_sigma_radps;
-  ego.accel_long_mps2 = Available(message.accel_long_mps2);
-  ego.accel_lat_mps2 = Available(message.accel_lat_mps2);
-  ego.gear = static_cast<Gear>(message.gear);
+  if (const auto sigma = judge.Sigma(message.speed_sigma_mps, kMaxSigma, "speed_sigma_mps")) {
+    ego.speed_sigma_mps = *sigma / vehicle.speed_scale;
+  }
+  const auto yaw_rate = judge.Optional(message.yaw_rate_radps, -kMaxYawRate_radps,
+                                       kMaxYawRate_radps, "yaw_rate_radps");
+  const auto yaw_rate_sigma =
+      judge.Sigma(message.yaw_rate_sigma_radps, kMaxSigma, "yaw_rate_sigma_radps");
+  if (yaw_rate) {
+    ego.yaw_rate_radps = *yaw_rate - vehicle.yaw_rate_bias_radps;
+    ego.yaw_rate_sigma_radps = yaw_rate_sigma.value_or(ego.yaw_rate_sigma_radps);
+  } else {
+    ego.has_yaw_rate = false;
+    ego.yaw_rate_sigma_radps = kUnknownYawRateSigma_radps;
+  }
+  ego.accel_long_mps2 =
+      judge.Optional(message.accel_long_mps2, -kMaxAccel_mps2, kMaxAccel_mps2, "accel_long_mps2");
+  ego.accel_lat_mps2 =
+      judge.Optional(message.accel_lat_mps2, -kMaxAccel_mps2, kMaxAccel_mps2, "accel_lat_mps2");
+  const int gear = message.gear;
+  const bool is_gear = (gear >= 0 && gear <= 3) || gear == 7;
+  if (!is_gear) judge.Unused("gear");
+  ego.gear = is_gear ? static_cast<Gear>(gear) : Gear::kUnknown;
   return ego;
 }
 
 Result<GnssFix> FromWire(const gnss_fix_t& message, const VehicleConfig& vehicle,
-                         Timestamp received) {
-  const bool has_yaw = !std::isnan(message.heading_rad);
-  const bool has_velocity =
-      !std::isnan(message.velocity_east_mps) && !std::isnan(message.velocity_north_mps);
-  const int fix = message.fix_type;
-  Judge judge;
-  judge.Holds(IsPlausibleTime(message.utime) && message.seq >= 0, Reason::kOutOfRange)
-      .Holds(fix == 0 || (fix >= 2 && fix <= 6), Reason::kOutOfRange)
-      .InRange(message.latitude_rad, -kPi / 2.0, kPi / 2.0)
-      .InRange(message.longitude_rad, -kPi, kPi)
-      .NaNOrInRange(message.altitude_m, -1000.0, kMaxAltitude_m)
-      .NaNOrInRange(message.velocity_up_mps, -kMaxSpeed_mps, kMaxSpeed_mps);
-  for (const double element : message.covariance_enu_m2) judge.InRange(element, -1e12, 1e12);
-  if (has_yaw)
-    judge.InRange(message.heading_rad, 0.0, 2.0 * kPi + 1e-9).Sigma(message.heading_sigma_rad);
-  if (has_velocity) {
-    judge.InRange(message.velocity_east_mps, -kMaxSpeed_mps, kMaxSpeed_mps)
-        .InRange(message.velocity_north_mps, -kMaxSpeed_mps, kMaxSpeed_mps)
-        .Sigma(message.velocity_sigma_mps);
-  }
-  GnssFix result;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      result.covariance_enu(row, column) = message.covariance_enu_m2[row * 3 + column];
-    }
-  }
-  // Symmetric, variances not negative, correlations at most 1: what a covariance has to be.
-  const Eigen::Matrix3d& P = result.covariance_enu;
-  for (int i = 0; i < 3; ++i) {
-    judge.Holds(P(i, i) >= 0.0, Reason::kOutOfRange);
-    for (int j = 0; j < i; ++j) {
-      const double scale = P(i, i) * P(j, j);
-      judge.Holds(std::abs(P(i, j) - P(j, i)) <= 1e-6 * (1.0 + std::sqrt(std::abs(scale))),
-                  Reason::kOutOfRange);
-      judge.Holds(P(i, j) * P(i, j) <= scale * (1.0 + 1e-6) + 1e-12, Reason::kOutOfRange);
-    }
-  }
-  if (judge.reason()) return *judge.reason();
+                         Timestamp received, RefusalTally& unused) {
+  FieldJudge judge(unused);
+  JudgeTime(message, received, judge);
+  judge.Need(message.fix_type != 0, {Reason::kGnssUnusable, "fix_type"});
+  const double latitude = message.latitude_rad;
+  const double longitude = message.longitude_rad;
+  const bool is_latitude_in_degrees = std::abs(latitude) > kPi / 2.0 && std::abs(latitude) <= 90.0;
+  judge.Need(latitude, -kPi / 2.0, kPi / 2.0,
+             is_latitude_in_degrees ? "latitude_rad looks like degrees" : "latitude_rad");
+  judge.Need(longitude, -kTurn_rad, kTurn_rad,
+             LooksLikeDegrees(longitude) ? "longitude_rad looks like degrees" : "longitude_rad");
+  judge.Need(std::abs(latitude) > kNullIsland_rad || std::abs(longitude) > kNullIsland_rad,
+             {Reason::kGnssUnusable, "latitude_rad and longitude_rad are 0"});
+  if (judge.refusal()) return *judge.refusal();
 
-  static_cast<MessageHeader&>(result) = Header(message, 0.0, received);
-  result.position.latitude_rad = message.latitude_rad;
-  result.position.longitude_rad = message.longitude_rad;
-  result.position.height_m = Available(message.altitude_m).value_or(0.0);
-  if (has_yaw) {
-    result.yaw_rad = WrapAngle(kPi / 2.0 - message.heading_rad - vehicle.heading_bias_rad);
-    result.yaw_sigma_rad = message.heading_sigma_rad;
+  GnssFix fix;
+  static_cast<MessageHeader&>(fix) = Header(message, 0.0, received);
+  fix.position.latitude_rad = latitude;
+  fix.position.longitude_rad = WrapAngle(longitude);
+  const auto height =
+      judge.Optional(message.altitude_m, kMinAltitude_m, kMaxAltitude_m, "altitude_m");
+  fix.has_height = height.has_value();
+  fix.position.height_m = height.value_or(0.0);
+  const auto covariance = Covariance(message.covariance_enu_m2, judge);
+  if (!covariance) return *judge.refusal();
+  fix.covariance_enu = *covariance;
+
+  const auto heading_sigma = judge.Sigma(message.heading_sigma_rad, kMaxSigma, "heading_sigma_rad");
+  const auto heading = judge.Optional(
+      message.heading_rad, -kTurn_rad, kTurn_rad,
+      LooksLikeDegrees(message.heading_rad) ? "heading_rad looks like degrees" : "heading_rad");
+  // Due north to the last bit and without accuracy: nobody filled the field in.
+  const bool is_unset = message.heading_rad == 0.0 && !heading_sigma;
+  if (heading && !is_unset) {
+    fix.yaw_rad = WrapAngle(kPi / 2.0 - *heading - vehicle.heading_bias_rad);
+    fix.yaw_sigma_rad = heading_sigma.value_or(kNaN);
   }
-  if (has_velocity) {
-    result.velocity_en_mps = Eigen::Vector2d(message.velocity_east_mps, message.velocity_north_mps);
-    result.velocity_sigma_mps = message.velocity_sigma_mps;
+  const auto east =
+      judge.Optional(message.velocity_east_mps, -kMaxSpeed_mps, kMaxSpeed_mps, "velocity_east_mps");
+  const auto north = judge.Optional(message.velocity_north_mps, -kMaxSpeed_mps, kMaxSpeed_mps,
+                                    "velocity_north_mps");
+  const auto velocity_sigma =
+      judge.Sigma(message.velocity_sigma_mps, kMaxSigma, "velocity_sigma_mps");
+  if (east && north) {
+    fix.velocity_en_mps = Eigen::Vector2d(*east, *north);
+    fix.velocity_sigma_mps = velocity_sigma.value_or(kNaN);
   }
-  result.fix_type = static_cast<FixType>(message.fix_type);
-  return result;
+  fix.fix_type = FixTypeOf(message.fix_type, judge);
+  return fix;
 }
 
 }  // namespace v2vouch::wire

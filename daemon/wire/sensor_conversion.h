@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "daemon/base/refusal_tally.h"
 #include "daemon/base/result.h"
 #include "daemon/data/input.h"
 #include "daemon/data/vehicle.h"
@@ -13,27 +14,28 @@
 
 namespace v2vouch::wire {
 
-/// Well-formed messages of the own sensors -> data, with the content judged: finite, in a range
-/// that physics allows, and from the sensor whose channel it came on. The sensor's sign
-/// conventions, range offset and clock offset (data/vehicle.h) are applied here and nowhere else;
-/// so is what the ego's own instruments are known to be off by.
-/// One bad detection or box is left out and counted in `dropped`; the others stay.
+/// Well-formed messages of the own sensors -> data, with the content judged: what a message cannot
+/// do without must be finite, in a range that physics allows, and from the sensor whose channel it
+/// came on; any other figure that is unknown or cannot be is left unused by itself, with the
+/// default that its .lcm file states. The sensor's sign conventions, range offset and clock offset
+/// (data/vehicle.h) are applied here and nowhere else; so is what the ego's own instruments are
+/// known to be off by.
+/// One bad detection or box is left out and counted in `dropped`, as is every figure left unused
+/// that is no documented "unavailable" (kFieldUnused); the others stay.
 Result<RadarScan> FromWire(const radar_scan_t& message, const RadarConfig& radar, int index,
-                           Timestamp received, ReasonCounts& dropped);
+                           Timestamp received, RefusalTally& dropped);
 Result<CameraDetections> FromWire(const camera_detections_t& message, const CameraConfig& camera,
-                                  int index, Timestamp received, ReasonCounts& dropped);
+                                  int index, Timestamp received, RefusalTally& dropped);
 /// speed = measured / speed_scale,  yaw rate = measured - yaw_rate_bias.
 Result<EgoMotion> FromWire(const ego_motion_t& message, const VehicleConfig& vehicle,
-                           Timestamp received);
+                           Timestamp received, RefusalTally& unused);
 
 /// Heading (clockwise from north) becomes yaw (counter-clockwise from east), less heading_bias.
 Result<GnssFix> FromWire(const gnss_fix_t& message, const VehicleConfig& vehicle,
-                         Timestamp received);
+                         Timestamp received, RefusalTally& unused);
 
-/// kUnknown for a name we do not know; COCO's names for the same things are taken too.
+/// kUnknown for a name we do not know; upper case and COCO's names for the same things are taken
+/// too.
 ObjectClass ClassOfName(std::string_view name);
-
-/// Whether a stamp can be a time at all: after 1970 and before 2200.
-bool IsPlausibleTime(std::int64_t utime);
 
 }  // namespace v2vouch::wire

@@ -22,6 +22,12 @@ struct InputStatus {
   bool is_silent = false;
 };
 
+struct RefusalDetail {
+  std::string channel;
+  Refusal refusal;
+  std::uint64_t count = 0;
+};
+
 struct MountStatus {
   std::string sensor;
   Timestamp stamp{};  ///< Timestamp{}: no window yet.
@@ -56,6 +62,7 @@ struct Status {
   std::string calibration;
   std::vector<InputStatus> inputs;
   ReasonCounts refusals{};
+  std::vector<RefusalDetail> refusal_details;
   std::int64_t queue_drops_own = 0;
   std::int64_t queue_drops_bsm = 0;
   std::int64_t kernel_drops = -1;

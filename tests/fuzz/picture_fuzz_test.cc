@@ -105,7 +105,7 @@ TEST(PictureFuzz, AThousandDamagedPicturesEndAsBoxesOrRefusals) {
     message.num_bytes = static_cast<std::int32_t>(message.data.size());
     std::vector<std::uint8_t> bytes;
     wire::Encode(message, bytes);
-    ReasonCounts dropped{};
+    RefusalTally dropped;
     const auto started = std::chrono::steady_clock::now();
     const auto decoded =
         decoder.Decode(*decoder.Find("CAMERA_FRONT_IMAGE"), bytes, Timestamp{}, dropped);

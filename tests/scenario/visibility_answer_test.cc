@@ -123,7 +123,7 @@ class AskedScenario {
  private:
   void Sort(const Recording& recording) {
     const wire::InputDecoder decoder(config_.perception.vehicle, config_.lcm.channels);
-    ReasonCounts dropped{};
+    RefusalTally dropped;
     for (const sim::SimEvent& event : recording) {
       if (event.channel == "TRUTH") {
         if (auto truth = wire::Decode<truth_list_t>(event.bytes)) truths_.push_back(*truth);

@@ -60,7 +60,7 @@ WireMessage Encode(const EgoMotion& ego, const VehicleConfig&) {
   message.seq = ego.seq;
   message.speed_mps = ego.speed_mps;
   message.speed_sigma_mps = ego.speed_sigma_mps;
-  message.yaw_rate_radps = ego.yaw_rate_radps;
+  message.yaw_rate_radps = ego.has_yaw_rate ? ego.yaw_rate_radps : kNaN;
   message.yaw_rate_sigma_radps = ego.yaw_rate_sigma_radps;
   message.accel_long_mps2 = ego.accel_long_mps2.value_or(kNaN);
   message.accel_long_sigma_mps2 = 0.1;
@@ -78,7 +78,7 @@ WireMessage Encode(const GnssFix& fix, const VehicleConfig&) {
   message.seq = fix.seq;
   message.latitude_rad = fix.position.latitude_rad;
   message.longitude_rad = fix.position.longitude_rad;
-  message.altitude_m = fix.position.height_m;
+  message.altitude_m = fix.has_height ? fix.position.height_m : kNaN;
   for (int i = 0; i < 9; ++i) message.covariance_enu_m2[i] = fix.covariance_enu(i / 3, i % 3);
   message.heading_rad = fix.yaw_rad ? HeadingFromNorth(*fix.yaw_rad) : kNaN;
   message.heading_sigma_rad = fix.yaw_sigma_rad;

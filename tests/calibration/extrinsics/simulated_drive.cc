@@ -24,7 +24,7 @@ DriveLog SimulatedDrive(const std::string& name, double duration_s, std::uint64_
   for (const std::string& problem : problems) ADD_FAILURE() << problem;
   if (world == nullptr) return log;
   const wire::InputDecoder decoder(VehicleConfig{}, wire::ChannelNames{});
-  ReasonCounts dropped{};
+  RefusalTally dropped;
   sim::Simulation simulation(*world, seed);
   std::vector<sim::SimEvent> events;
   for (bool goes_on = true; goes_on;) {

@@ -208,7 +208,7 @@ TEST(DetectThread, RefusalsAndExceptionsBecomeReasons) {
     DetectThread thread(decoder, detector, queue);
     thread.Offer(std::move(picture));
     const auto arrival = queue.Pop(10s);
-    return arrival ? std::get<Reason>(arrival->content) : Reason::kCount;
+    return arrival ? std::get<Refusal>(arrival->content).reason : Reason::kCount;
   };
   EXPECT_EQ(reason_of(nullptr, Picture(1)), Reason::kNoDetector);
   GatedDetector detector;

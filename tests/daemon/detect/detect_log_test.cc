@@ -36,7 +36,7 @@ class RecordedEyes final : public ObjectDetector {
                                     [&](const auto& each) { return each.seq == image.seq; });
     if (found == seen_.end()) return Reason::kBadImage;
     CameraConfig camera;
-    ReasonCounts dropped{};
+    RefusalTally dropped;
     camera.image_width_px = found->image_width_px;
     camera.image_height_px = found->image_height_px;
     auto detections = wire::FromWire(*found, camera, image.camera, image.received, dropped);
