@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "daemon/alignment/flat_earth.h"
 #include "daemon/base/angle.h"
@@ -19,12 +20,19 @@ constexpr double kUselessSigma_m = 50.0;
 constexpr double kUnknownVelocitySigma_mps = 0.2;
 constexpr double kMinVelocitySigma_mps = 0.05;
 constexpr double kUnknownYawSigma_rad = 0.05;
-constexpr double kSeedDistance_m = 20.0;
 constexpr double kAgree_s = 1.0;
 constexpr double kNewPlace_s = 10.0;
 constexpr double kVouched_s = 5.0;
 // Fixes of the new place must follow one another; after a longer silence it starts again.
 constexpr double kCandidateGap_s = 2.0;
+// How long fixes must have agreed with an estimate before it is more than the first of several
+// opinions: twice the correlation time of a receiver's errors. A few seconds of bad fixes after
+// switching on (cold start, no sky) stay below.
+constexpr double kEstablished_s = 10.0;
+constexpr double kDirected_m = 20.0;  // Way by which a direction is confirmed.
+constexpr double kOverrule_s = 1.0;
+constexpr int kOverruleFixes = 3;
+constexpr double kLongestStep_s = 1.5;  // A fix supports no longer than this.
 
 Wgs84 LatticePoint(const Wgs84& near) {
   const double latitude = std::round(near.latitude_rad / kLattice_rad) * kLattice_rad;
@@ -37,6 +45,9 @@ Wgs84 LatticePoint(const Wgs84& near) {
 std::optional<Eigen::Matrix2d> UsableCovariance(const GnssFix& fix, double floor_m) {
   Eigen::Matrix2d C = fix.covariance_enu.topLeftCorner<2, 2>();
   if (!C.allFinite()) return std::nullopt;
+  // One axis known: as good as the other, for lack of better.
+  if (C(0, 0) == 0.0 && C(1, 1) > 0.0) C(0, 0) = C(1, 1);
+  if (C(1, 1) == 0.0 && C(0, 0) > 0.0) C(1, 1) = C(0, 0);
   if (C.isZero(0.0)) C = kUnknownSigma_m * kUnknownSigma_m * Eigen::Matrix2d::Identity();
   C = (0.5 * (C + C.transpose())).eval();
   const double mean = 0.5 * C.trace();
@@ -76,12 +87,13 @@ Timestamp Alignment::FixTime(const GnssFix& fix) const {
 
 void Alignment::Vouch(Timestamp at) { vouched_ = vouched_ ? std::max(*vouched_, at) : at; }
 
-FixInPlane Alignment::InPlane(const GnssFix& fix, const Eigen::Matrix2d& covariance_en) const {
+FixInPlane Alignment::InPlane(const LocalPlane& plane, const GnssFix& fix,
+                              const Eigen::Matrix2d& covariance_en, double yaw_floor_rad) {
   // East and north at the fix are not quite L's axes: meridians converge.
-  const double turn = ConvergenceAt(plane_, fix.position);
+  const double turn = ConvergenceAt(plane, fix.position);
   const Eigen::Matrix2d R_LN = Pose<LocalEnu, LocalEnu>(0.0, 0.0, turn).rotation();
   FixInPlane in_plane;
-  in_plane.p_L = Flat(plane_, fix.position);
+  in_plane.p_L = Flat(plane, fix.position);
   in_plane.covariance = R_LN * covariance_en * R_LN.transpose();
   if (fix.velocity_en_mps && fix.velocity_en_mps->allFinite()) {
     in_plane.v_L = R_LN * *fix.velocity_en_mps;
@@ -90,68 +102,67 @@ FixInPlane Alignment::InPlane(const GnssFix& fix, const Eigen::Matrix2d& covaria
   }
   if (fix.yaw_rad && std::isfinite(*fix.yaw_rad)) {
     in_plane.yaw_L_rad = WrapAngle(*fix.yaw_rad + turn);
-    in_plane.yaw_sigma_rad =
-        SigmaOr(fix.yaw_sigma_rad, kUnknownYawSigma_rad, config_.yaw_floor_rad + 1e-4);
+    in_plane.yaw_sigma_rad = SigmaOr(fix.yaw_sigma_rad, kUnknownYawSigma_rad, yaw_floor_rad + 1e-4);
   }
   return in_plane;
 }
 
-std::optional<Reason> Alignment::OnFix(const GnssFix& fix, const EgoState& ego) {
-  if (!HasPosition(fix)) return Reason::kGnssUnusable;
+// The plane is good near its origin only: half round the earth it folds back on itself.
+bool Alignment::IsFar(const LocalPlane& plane, const GnssFix& fix) const {
+  const Eigen::Vector3d from_E = ToEcef(fix.position).p_E - ToEcef(plane.origin()).p_E;
+  constexpr double kHeights_m = 20000.0;
+  return from_E.norm() > 2.0 * config_.reanchor_m + kHeights_m;
+}
+
+std::optional<Refusal> Alignment::OnFix(const GnssFix& fix, const EgoState& ego) {
+  if (!HasPosition(fix)) return Refusal{Reason::kGnssUnusable, "latitude_rad and longitude_rad"};
   const auto covariance_en = UsableCovariance(fix, config_.position_floor_m);
-  if (!covariance_en) return Reason::kGnssUnusable;
-  if (newest_ && ego.stamp < *newest_) return Reason::kTooOld;
+  if (!covariance_en) return Refusal{Reason::kGnssUnusable, "covariance_enu_m2"};
+  if (newest_ && ego.stamp < *newest_) return Refusal{Reason::kTooOld, "utime"};
+  const double dt_s = newest_ ? std::min(ToSeconds(ego.stamp - *newest_), kLongestStep_s) : 0.0;
   newest_ = ego.stamp;
 
   if (!is_ready_) {
-    // Not a jump detector yet: the plane follows the fixes until the first one is used.
-    const Wgs84 lattice = LatticePoint(fix.position);
-    if (!has_plane_ || Flat(plane_, fix.position).norm() > config_.reanchor_m) {
-      plane_ = LocalPlane(lattice);
-      has_plane_ = true;
-      seed_.reset();
-    }
-    const auto started = Start(InPlane(fix, *covariance_en), ego);
+    const auto started = TryStart(fix, *covariance_en, ego);
     if (!started) return std::nullopt;
     filter_ = *started;
+    plane_ = *start_plane_;
     is_ready_ = true;
-    height_m_ = fix.position.height_m;
+    support_s_ = way_m_ = 0.0;
+    start_.Reset();
+    if (fix.has_height) height_m_ = fix.position.height_m;
     Publish();
     return std::nullopt;
   }
 
   filter_.Predict(ego, noise_);
   ReanchorIfFar();
-  const FixInPlane in_plane = InPlane(fix, *covariance_en);
-  std::optional<Reason> refusal;
-  if (filter_.Contradicts(in_plane, antenna_B_, ego, noise_, config_.jump_m)) {
+  const FixInPlane in_plane = InPlane(plane_, fix, *covariance_en);
+  const std::string_view contradiction =
+      IsFar(plane_, fix) ? std::string_view("latitude_rad and longitude_rad")
+                         : filter_.Contradiction(in_plane, antenna_B_, ego, noise_, config_.jump_m);
+  std::optional<Refusal> refusal;
+  if (!contradiction.empty()) {
     is_suspect_ = true;
     agrees_since_.reset();
     suspect_until_.reset();
-    Challenge(in_plane, ego);
-    refusal = Reason::kGnssJump;
+    Challenge(fix, *covariance_en, dt_s, ego);
+    refusal = Refusal{Reason::kGnssJump, contradiction};
   } else {
-    candidate_.reset();
+    Agree(dt_s, ego);
     if (is_suspect_ && !suspect_until_) {
-      if (!agrees_since_) agrees_since_ = ego.stamp;
-      if (ToSeconds(ego.stamp - *agrees_since_) >= kAgree_s) is_suspect_ = false;
-    }
-    if (suspect_until_ && ego.stamp >= *suspect_until_) {
-      suspect_until_.reset();
-      is_suspect_ = false;
-    }
-    if (is_suspect_ && !suspect_until_) {
-      refusal = Reason::kGnssJump;  // Agrees again, but not yet for long enough.
+      // Agrees again, but not yet for long enough.
+      refusal = Refusal{Reason::kGnssJump, "latitude_rad and longitude_rad"};
     } else {
       agrees_since_.reset();
       filter_.Update(in_plane, antenna_B_, ego, noise_);
-      height_m_ = fix.position.height_m;
+      if (fix.has_height) height_m_ = fix.position.height_m;
     }
   }
   if (!filter_.IsSound()) {  // Start again rather than publish nonsense.
     is_ready_ = false;
-    has_plane_ = false;
-    seed_.reset();
+    start_plane_.reset();
+    start_.Reset();
     candidate_.reset();
     return Reason::kGnssUnusable;
   }
@@ -159,62 +170,112 @@ std::optional<Reason> Alignment::OnFix(const GnssFix& fix, const EgoState& ego) 
   return refusal;
 }
 
-std::optional<AlignmentFilter> Alignment::Start(const FixInPlane& fix, const EgoState& ego) {
-  if (fix.yaw_L_rad) {
-    return AlignmentFilter(fix, *fix.yaw_L_rad - ego.X_OB.yaw_rad(), fix.yaw_sigma_rad, antenna_B_,
-                           ego);
+void Alignment::Agree(double dt_s, const EgoState& ego) {
+  const bool was_established = IsEstablished();
+  support_s_ += dt_s;
+  way_m_ += std::abs(ego.speed_mps) * dt_s;
+  if (was_established || (candidate_ && (candidate_->support_s -= dt_s) < 0.0)) {
+    candidate_.reset();
+    start_.Reset();
   }
-  if (const auto yaw =
-          AlignmentFilter::YawFromCourse(fix, antenna_B_, ego, config_.min_course_speed_mps)) {
-    return AlignmentFilter(fix, *yaw, AlignmentFilter::CourseSigma(fix, ego), antenna_B_, ego);
+  if (is_suspect_ && !suspect_until_) {
+    if (!agrees_since_) agrees_since_ = ego.stamp;
+    // Between openings the votes decide; a fix for the present one is not kept waiting.
+    const double agreed_s = ToSeconds(ego.stamp - *agrees_since_);
+    if (agreed_s >= kAgree_s || !was_established) is_suspect_ = false;
   }
-  if (fix.v_L) return std::nullopt;
-  // A receiver of positions only: compare the way in L with the way in O.
-  const Eigen::Vector2d antenna_O = ego.X_OB.origin().vector() + ego.X_OB.rotation() * antenna_B_;
-  const double sigma = std::sqrt(0.5 * fix.covariance.trace());
-  if (!seed_) {
-    seed_ = Seed{fix.p_L, antenna_O, sigma};
-    return std::nullopt;
+  if (suspect_until_ && ego.stamp >= *suspect_until_) {
+    suspect_until_.reset();
+    is_suspect_ = false;
   }
-  const Eigen::Vector2d way_O = antenna_O - seed_->antenna_O;
-  const Eigen::Vector2d way_L = fix.p_L - seed_->antenna_L;
-  const double yaw_sigma = std::hypot(sigma, seed_->sigma_m) / std::max(way_O.norm(), 1.0);
-  if (way_O.norm() < kSeedDistance_m || yaw_sigma > 0.1) return std::nullopt;
-  return AlignmentFilter(fix, std::atan2(way_L.y(), way_L.x()) - std::atan2(way_O.y(), way_O.x()),
-                         yaw_sigma, antenna_B_, ego);
 }
 
-void Alignment::Challenge(const FixInPlane& fix, const EgoState& ego) {
-  if (candidate_ && ToSeconds(ego.stamp - candidate_->last) > kCandidateGap_s) candidate_.reset();
-  if (candidate_) {
-    const double dt = ToSeconds(ego.stamp - candidate_->last);
-    candidate_->filter.Predict(ego, noise_);
-    if (candidate_->filter.Contradicts(fix, antenna_B_, ego, noise_, config_.jump_m)) {
-      candidate_.reset();
-    } else {
-      candidate_->filter.Update(fix, antenna_B_, ego, noise_);
-      candidate_->last = ego.stamp;
-      if (std::abs(ego.speed_mps) >= config_.min_course_speed_mps) candidate_->driven_s += dt;
-    }
+// Starts an estimate, or a rival of the present one, in a plane near the fix.
+std::optional<AlignmentFilter> Alignment::TryStart(const GnssFix& fix,
+                                                   const Eigen::Matrix2d& covariance_en,
+                                                   const EgoState& ego) {
+  if (!start_plane_ || Flat(*start_plane_, fix.position).norm() > config_.reanchor_m ||
+      IsFar(*start_plane_, fix)) {
+    start_plane_ = LocalPlane(LatticePoint(fix.position));
+    start_.Reset();
   }
-  if (!candidate_) {
-    // Where the fix brings no yaw, ours is as good a guess as any; motion will tell.
-    double yaw = filter_.yaw_rad();
-    double sigma = std::sqrt(filter_.PoseCovariance()(2, 2));
-    if (const auto course =
-            AlignmentFilter::YawFromCourse(fix, antenna_B_, ego, config_.min_course_speed_mps)) {
-      yaw = *course;
-      sigma = AlignmentFilter::CourseSigma(fix, ego);
+  return start_.OnFix(InPlane(*start_plane_, fix, covariance_en), ego, antenna_B_,
+                      config_.min_course_speed_mps, config_.jump_m);
+}
+
+bool Alignment::IsEstablished() const {
+  return support_s_ >= kEstablished_s && way_m_ >= kDirected_m;
+}
+
+bool Alignment::HasWon(const Candidate& candidate) const {
+  if (candidate.driven_s >= kNewPlace_s) return true;
+  if (candidate.support_s < kOverrule_s || candidate.fixes < kOverruleFixes) return false;
+  if (support_s_ < kEstablished_s) return candidate.support_s > support_s_;
+  return way_m_ < kDirected_m && candidate.way_m >= kDirected_m;
+}
+
+void Alignment::FollowCandidate(const GnssFix& fix, const Eigen::Matrix2d& covariance_en,
+                                double dt_s, const EgoState& ego) {
+  if (ToSeconds(ego.stamp - candidate_->last) > kCandidateGap_s) return candidate_.reset();
+  Candidate& candidate = *candidate_;
+  candidate.filter.Predict(ego, noise_);
+  const FixInPlane in_plane = InPlane(candidate.plane, fix, covariance_en);
+  if (IsFar(candidate.plane, fix) ||
+      !candidate.filter.Contradiction(in_plane, antenna_B_, ego, noise_, config_.jump_m).empty()) {
+    // One stray fix among good ones does not end what those have in common.
+    candidate.support_s -= dt_s;
+    if (IsEstablished() || candidate.support_s < 0.0) candidate_.reset();
+    return;
+  }
+  candidate.filter.Update(in_plane, antenna_B_, ego, noise_);
+  const double since_s = ToSeconds(ego.stamp - candidate.last);
+  candidate.last = ego.stamp;
+  if (std::abs(ego.speed_mps) >= config_.min_course_speed_mps) candidate.driven_s += since_s;
+  candidate.support_s += dt_s;
+  candidate.way_m += std::abs(ego.speed_mps) * dt_s;
+  ++candidate.fixes;
+}
+
+void Alignment::Challenge(const GnssFix& fix, const Eigen::Matrix2d& covariance_en, double dt_s,
+                          const EgoState& ego) {
+  const auto started = TryStart(fix, covariance_en, ego);
+  if (candidate_) FollowCandidate(fix, covariance_en, dt_s, ego);
+  const bool is_better = candidate_ && candidate_->is_guess && started && !IsEstablished();
+  if (!candidate_ || is_better) {
+    const bool is_near =
+        !IsFar(plane_, fix) && Flat(plane_, fix.position).norm() <= 2.0 * config_.reanchor_m;
+    Candidate fresh{.plane = is_near ? plane_ : *start_plane_, .filter = {}, .last = ego.stamp};
+    const FixInPlane in_plane = InPlane(fresh.plane, fix, covariance_en);
+    if (started) {
+      const double turn =
+          ConvergenceAt(fresh.plane, fix.position) - ConvergenceAt(*start_plane_, fix.position);
+      fresh.filter = *started;
+      fresh.filter.Rebase(Flat(fresh.plane, Unflat(*start_plane_, started->body_L())), turn);
+    } else {
+      // Where the fixes bring no yaw, ours is as good a guess as any; motion will tell.
+      const double sigma = std::sqrt(filter_.PoseCovariance()(2, 2));
+      fresh.filter = AlignmentFilter(in_plane, filter_.yaw_rad(), sigma, antenna_B_, ego);
+      fresh.is_guess = true;
     }
-    candidate_ = Candidate{AlignmentFilter(fix, yaw, sigma, antenna_B_, ego), ego.stamp, 0.0};
+    candidate_ = fresh;
     return;
   }
   const bool is_vouched = vouched_ && ToSeconds(ego.stamp - *vouched_) < kVouched_s;
-  if (candidate_->driven_s < kNewPlace_s || is_vouched) return;
+  if (!HasWon(*candidate_) || is_vouched) return;
   candidate_->filter.InheritOdometryErrors(filter_);
   filter_ = candidate_->filter;
+  plane_ = candidate_->plane;
+  // Moving away from an established place leaves a doubt; choosing between two openings does not.
+  if (IsEstablished()) {
+    suspect_until_ = ego.stamp + FromSeconds(kNewPlace_s);
+  } else {
+    is_suspect_ = false;
+  }
+  support_s_ = candidate_->support_s;
+  way_m_ = candidate_->way_m;
+  if (fix.has_height) height_m_ = fix.position.height_m;
   candidate_.reset();
-  suspect_until_ = ego.stamp + FromSeconds(kNewPlace_s);
+  start_.Reset();
   ReanchorIfFar();
 }
 
@@ -228,7 +289,10 @@ void Alignment::ReanchorIfFar() {
     filter.Rebase(Flat(plane_, place), ConvergenceAt(plane_, place) - ConvergenceAt(old, place));
   };
   rebase(filter_);
-  if (candidate_) rebase(candidate_->filter);
+  if (candidate_ && candidate_->plane.origin() == old.origin()) {
+    rebase(candidate_->filter);
+    candidate_->plane = plane_;
+  }
 }
 
 void Alignment::Publish() {
@@ -267,7 +331,7 @@ Wgs84 Alignment::ToGeodetic(const Eigen::Vector2d& p_O, double height_m) const {
 
 Wgs84 Alignment::EgoGeodetic(const EgoState& ego) const {
   const Point<Odometry> centre = ego.X_OB * Point<Body>{vehicle_.centre_x_m, 0.0};
-  return ToGeodetic(centre.vector(), height_m_);
+  return ToGeodetic(centre.vector(), height_m_.value_or(0.0));
 }
 
 }  // namespace v2vouch

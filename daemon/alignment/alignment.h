@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "daemon/alignment/alignment_filter.h"
+#include "daemon/alignment/alignment_start.h"
 #include "daemon/base/reason.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/claim.h"
@@ -47,22 +48,26 @@ struct AlignmentConfig {
 /// lattice of 0.01 degrees, so it does not depend on which fix came first; a new origin leaves
 /// every point in O where it was (below 1 mm).
 ///
-/// Starts with a position and a yaw source: course above min_course_speed_mps, the receiver's
-/// heading, or, from a receiver that gives neither, 20 m of way. At standstill the car's pose in L
-/// is held in direction, and its position is only averaged.
+/// Starts with a position and a yaw source (see AlignmentStart): any receiver will do, in traffic
+/// too. At standstill the car's pose in L is held in direction, and its position is only averaged.
 ///
 /// A jump freezes the estimate (dead reckoning carries it) and raises `is_suspect`. It thaws when
 /// fixes agree with the dead-reckoned prediction for 1 s, or, when the new place has been the
 /// consistent one over 10 s of driving, by moving there, with the flag kept for 10 s more. A car
 /// that stands cannot tell the places apart and never moves; nor does one whose present alignment
 /// was vouched for in the last 5 s.
+///
+/// The first fixes are believed no more than those that follow: until 10 s of fixes have agreed
+/// with the estimate it is overruled, at once and without a flag kept, by another place that more
+/// (by duration, at least 1 s and 3 fixes) agree with, and with odometry. Its direction, if it was
+/// never confirmed by 20 m of way, is overruled by 20 m of way.
 class Alignment {
  public:
   Alignment(const AlignmentConfig& config, const VehicleConfig& vehicle);
 
   /// @param ego the ego in O at the fix' time (latency applied by the caller through FixTime).
   /// @return why the fix was not used, or nullopt.
-  std::optional<Reason> OnFix(const GnssFix& fix, const EgoState& ego);
+  std::optional<Refusal> OnFix(const GnssFix& fix, const EgoState& ego);
   /// When the fix was true: its stamp less the receiver's latency.
   [[nodiscard]] Timestamp FixTime(const GnssFix& fix) const;
   /// A claim brought over by this alignment agreed with the own sensors at `at`.
@@ -84,26 +89,41 @@ class Alignment {
   [[nodiscard]] ClaimInOdometry ToOdometry(const Claim& claim, Timestamp at) const;
   /// The geodetic position of a point in O. Requires is_ready().
   [[nodiscard]] Wgs84 ToGeodetic(const Eigen::Vector2d& p_O, double height_m) const;
-  /// The ego's footprint centre, height as of the last fix used. Requires is_ready().
+  /// The ego's footprint centre, height as of the last fix used that had one,
+  /// else 0. Requires is_ready().
   [[nodiscard]] Wgs84 EgoGeodetic(const EgoState& ego) const;
 
  private:
   // A second opinion on where the car is, grown from the fixes that contradict the estimate.
   struct Candidate {
+    LocalPlane plane;
     AlignmentFilter filter;
-    Timestamp last{};
-    double driven_s = 0.0;
-  };
-  // A first fix that waits for a yaw source.
-  struct Seed {
-    Eigen::Vector2d antenna_L = Eigen::Vector2d::Zero();
-    Eigen::Vector2d antenna_O = Eigen::Vector2d::Zero();
-    double sigma_m = 0.0;
+    Timestamp last{};        // Fix that agreed.
+    double driven_s = 0.0;   // While fixes agreed.
+    double support_s = 0.0;  // Of fixes that agreed, less of those that did not.
+    double way_m = 0.0;
+    int fixes = 1;
+    bool is_guess = false;  // No fix told its direction.
   };
 
-  [[nodiscard]] FixInPlane InPlane(const GnssFix& fix, const Eigen::Matrix2d& covariance_en) const;
-  [[nodiscard]] std::optional<AlignmentFilter> Start(const FixInPlane& fix, const EgoState& ego);
-  void Challenge(const FixInPlane& fix, const EgoState& ego);
+  [[nodiscard]] static FixInPlane InPlane(const LocalPlane& plane, const GnssFix& fix,
+                                          const Eigen::Matrix2d& covariance_en,
+                                          double yaw_floor_rad);
+  [[nodiscard]] FixInPlane InPlane(const LocalPlane& plane, const GnssFix& fix,
+                                   const Eigen::Matrix2d& covariance_en) const {
+    return InPlane(plane, fix, covariance_en, config_.yaw_floor_rad);
+  }
+  [[nodiscard]] bool IsFar(const LocalPlane& plane, const GnssFix& fix) const;
+  [[nodiscard]] bool IsEstablished() const;
+  [[nodiscard]] bool HasWon(const Candidate& candidate) const;
+  [[nodiscard]] std::optional<AlignmentFilter> TryStart(const GnssFix& fix,
+                                                        const Eigen::Matrix2d& covariance_en,
+                                                        const EgoState& ego);
+  void Agree(double dt_s, const EgoState& ego);
+  void Challenge(const GnssFix& fix, const Eigen::Matrix2d& covariance_en, double dt_s,
+                 const EgoState& ego);
+  void FollowCandidate(const GnssFix& fix, const Eigen::Matrix2d& covariance_en, double dt_s,
+                       const EgoState& ego);
   void ReanchorIfFar();
   void Publish();
 
@@ -111,18 +131,20 @@ class Alignment {
   VehicleConfig vehicle_;
   Eigen::Vector2d antenna_B_;
   AlignmentNoise noise_;
-  bool has_plane_ = false;
   bool is_ready_ = false;
   bool is_suspect_ = false;
   LocalPlane plane_{Wgs84{}};
   AlignmentFilter filter_;
-  std::optional<Seed> seed_;
+  std::optional<LocalPlane> start_plane_;  // In which `start_` works.
+  AlignmentStart start_;                   // Of the estimate, then of candidates.
   std::optional<Candidate> candidate_;
+  double support_s_ = 0.0;                  // Of fixes that agreed since the start.
+  double way_m_ = 0.0;                      // Driven meanwhile.
   std::optional<Timestamp> agrees_since_;   // While suspect: since when fixes agree again.
   std::optional<Timestamp> suspect_until_;  // After a move.
   std::optional<Timestamp> vouched_;
   std::optional<Timestamp> newest_;
-  double height_m_ = 0.0;
+  std::optional<double> height_m_;
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Identity();
 };
 

@@ -43,11 +43,6 @@ double ColourFactor(double correlation_s, double interval_s) {
   return std::max(1.0, 2.0 * correlation_s / std::max(interval_s, 1e-3));
 }
 
-// Direction and speed of the antenna in B: the car turns about its rear axle.
-Eigen::Vector2d AntennaVelocity_B(const Eigen::Vector2d& antenna_B, const EgoState& ego) {
-  return {ego.speed_mps - ego.yaw_rate_radps * antenna_B.y(), ego.yaw_rate_radps * antenna_B.x()};
-}
-
 }  // namespace
 
 AlignmentFilter::AlignmentFilter(const FixInPlane& fix, double yaw_LO_rad, double yaw_sigma_rad,
@@ -70,6 +65,19 @@ AlignmentFilter::AlignmentFilter(const FixInPlane& fix, double yaw_LO_rad, doubl
   covariance_(kYaw, kYaw) = yaw_variance;
   covariance_(kYawDrift, kYawDrift) = kYawDriftSigma_radps * kYawDriftSigma_radps;
   covariance_(kScale, kScale) = kScaleSigma * kScaleSigma;
+}
+
+Eigen::Vector2d AlignmentFilter::AntennaVelocity_B(const Eigen::Vector2d& antenna_B,
+                                                   const EgoState& ego) {
+  return {ego.speed_mps - ego.yaw_rate_radps * antenna_B.y(), ego.yaw_rate_radps * antenna_B.x()};
+}
+
+double AlignmentFilter::ColourOfPositions(double interval_s) {
+  return ColourFactor(kPositionCorrelation_s, interval_s);
+}
+
+double AlignmentFilter::ColourOfVelocities(double interval_s) {
+  return ColourFactor(kVelocityCorrelation_s, interval_s);
 }
 
 bool AlignmentFilter::IsStanding(const EgoState& ego) {
@@ -136,9 +144,10 @@ double AlignmentFilter::CourseSigma(const FixInPlane& fix, const EgoState& ego) 
   return std::hypot(fix.velocity_sigma_mps / speed, slip);
 }
 
-bool AlignmentFilter::Contradicts(const FixInPlane& fix, const Eigen::Vector2d& antenna_B,
-                                  const EgoState& ego, const AlignmentNoise& noise,
-                                  double jump_m) const {
+std::string_view AlignmentFilter::Contradiction(const FixInPlane& fix,
+                                                const Eigen::Vector2d& antenna_B,
+                                                const EgoState& ego, const AlignmentNoise& noise,
+                                                double jump_m) const {
   const Eigen::Vector2d arm_L = Rotation(mean_(kYaw)) * (ego.X_OB.rotation() * antenna_B);
   const Eigen::Vector2d innovation = fix.p_L - (mean_.head<2>() + arm_L);
   Eigen::Matrix<double, 2, 3> H = Eigen::Matrix<double, 2, 3>::Zero();
@@ -149,15 +158,19 @@ bool AlignmentFilter::Contradicts(const FixInPlane& fix, const Eigen::Vector2d& 
   if (distance > 0.0) {
     const Eigen::Vector2d direction = innovation / distance;
     const double sigma = std::sqrt(std::max(0.0, direction.dot(S * direction)));
-    if (distance > jump_m + 4.0 * sigma) return true;
+    if (distance > jump_m + 4.0 * sigma) return "latitude_rad and longitude_rad";
   }
   const auto is_off = [this](double yaw_LO, double sigma) {
     const double total = std::sqrt(covariance_(kYaw, kYaw) + sigma * sigma);
     return std::abs(AngleDifference(yaw_LO, mean_(kYaw))) > kYawJump_rad + 4.0 * total;
   };
   const auto course = YawFromCourse(fix, antenna_B, ego, noise.min_course_speed_mps);
-  if (course && is_off(*course, CourseSigma(fix, ego))) return true;
-  return fix.yaw_L_rad && is_off(*fix.yaw_L_rad - ego.X_OB.yaw_rad(), fix.yaw_sigma_rad);
+  if (course && is_off(*course, CourseSigma(fix, ego))) {
+    return "velocity_east_mps and velocity_north_mps";
+  }
+  const bool is_heading_off =
+      fix.yaw_L_rad && is_off(*fix.yaw_L_rad - ego.X_OB.yaw_rad(), fix.yaw_sigma_rad);
+  return is_heading_off ? "heading_rad" : "";
 }
 
 void AlignmentFilter::Update(const FixInPlane& fix, const Eigen::Vector2d& antenna_B,

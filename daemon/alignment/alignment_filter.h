@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string_view>
 
 #include "daemon/base/time.h"
 #include "daemon/data/ego.h"
@@ -53,10 +54,11 @@ class AlignmentFilter {
   /// car's own pose in L is held, whatever O does.
   void Predict(const EgoState& ego, const AlignmentNoise& noise);
   /// Distance of the fix from the prediction, beyond `jump_m` and four sigma; or course or heading
-  /// far from the predicted one.
-  [[nodiscard]] bool Contradicts(const FixInPlane& fix, const Eigen::Vector2d& antenna_B,
-                                 const EgoState& ego, const AlignmentNoise& noise,
-                                 double jump_m) const;
+  /// far from the predicted one. @return the fields of gnss_fix_t that contradict; "" = none does.
+  [[nodiscard]] std::string_view Contradiction(const FixInPlane& fix,
+                                               const Eigen::Vector2d& antenna_B,
+                                               const EgoState& ego, const AlignmentNoise& noise,
+                                               double jump_m) const;
   /// Takes a fix in. Call Predict to the same instant before.
   void Update(const FixInPlane& fix, const Eigen::Vector2d& antenna_B, const EgoState& ego,
               const AlignmentNoise& noise);
@@ -81,6 +83,11 @@ class AlignmentFilter {
                                              const Eigen::Vector2d& antenna_B, const EgoState& ego,
                                              double min_speed_mps);
   static double CourseSigma(const FixInPlane& fix, const EgoState& ego);
+  /// Of the antenna in B: the car turns about its rear axle.
+  static Eigen::Vector2d AntennaVelocity_B(const Eigen::Vector2d& antenna_B, const EgoState& ego);
+  /// How many fixes `interval_s` apart are worth one.
+  static double ColourOfPositions(double interval_s);
+  static double ColourOfVelocities(double interval_s);
 
  private:
   void UpdateYaw(double yaw_LO_rad, double variance);

@@ -43,7 +43,7 @@ TEST(Alignment, WaitsForAYawSourceWhileStanding) {
   Alignment alignment(AlignmentConfig{}, vehicle);
   Drive(drive, alignment, vehicle, 0.0, 0.0, 5.0);
   EXPECT_FALSE(alignment.is_ready());
-  Drive(drive, alignment, vehicle, 2.0, 0.0, 5.0);  // Too slow for a course.
+  Drive(drive, alignment, vehicle, 0.3, 0.0, 5.0);  // Too slow for a direction.
   EXPECT_FALSE(alignment.is_ready());
   Drive(drive, alignment, vehicle, 8.0, 0.0, 0.1);
   EXPECT_TRUE(alignment.is_ready());
@@ -74,7 +74,7 @@ TEST(Alignment, StartsFromPositionsAloneAfterSomeWay) {
     GnssFix fix = drive.Fix(vehicle);
     fix.velocity_en_mps.reset();
     alignment.OnFix(fix, drive.Ego());
-    if (i == 15) {
+    if (i == 3) {  // 4 m.
       EXPECT_FALSE(alignment.is_ready());
     }
   }
