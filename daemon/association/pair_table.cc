@@ -120,6 +120,17 @@ void PairTable::DropSender(SenderId sender) {
   std::erase_if(pairs_, [&](const Pair& pair) { return pair.sender == sender; });
 }
 
+void PairTable::TakeFrom(PairTable& other, SenderId sender, const AssociationConfig& config) {
+  for (const Pair& pair : other.pairs_) {
+    if (pair.sender != sender || Find(sender, pair.track_id) != nullptr) continue;
+    if (pairs_.size() >= static_cast<std::size_t>(config.max_pairs)) break;
+    const auto at = std::ranges::lower_bound(pairs_, KeyOf(pair), {}, KeyOf);
+    Pair& taken = *pairs_.insert(at, pair);
+    taken.is_incumbent = taken.is_assigned = false;
+  }
+  other.DropSender(sender);
+}
+
 void PairTable::Expire(Timestamp now, const AssociationConfig& config) {
   std::erase_if(pairs_, [&](const Pair& pair) {
     return ToSeconds(now - pair.evidence.last()) > config.pair_timeout_s;

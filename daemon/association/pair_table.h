@@ -47,6 +47,8 @@ class PairTable {
   /// Marks (or with nullopt unmarks) the validated pair of a sender.
   void SetIncumbent(SenderId sender, std::optional<std::uint64_t> track_id);
   void DropSender(SenderId sender);
+  /// Takes over what another table holds of a sender, as far as there is room.
+  void TakeFrom(PairTable& other, SenderId sender, const AssociationConfig& config);
   /// Drops pairs not observed for the timeout.
   void Expire(Timestamp now, const AssociationConfig& config);
 

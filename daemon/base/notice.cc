@@ -30,6 +30,11 @@ constexpr std::array<Words, kNoticeKindCount> kWords = {{
      "them gets both"},
     {"radio_flood",
      "more BSMs come than can be taken in; the oldest are dropped, own sensors are not"},
+    {"height_offset",
+     "set the GNSS receiver to height above the ellipsoid, not sea level; senders may do it wrong, "
+     "too"},
+    {"heights_apart",
+     "a bridge, or heights above sea level here and the ellipsoid there: no V2V match"},
 }};
 
 static_assert(!kWords.back().name.empty(), "one entry per kind");

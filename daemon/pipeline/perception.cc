@@ -148,7 +148,7 @@ void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
   const auto claim = intake.Accept(bsm, place);
   if (!claim) {
     Tell(bsm, claim.reason(), outputs);
-    return outputs.Refuse(claim.reason(), bsm.stamp);
+    return outputs.Refuse(claim.refusal(), bsm.stamp);
   }
   // Far strangers can meet no track: they are listed, and cost nothing more. Whoever was near and
   // suddenly is far must answer for it.
@@ -335,6 +335,7 @@ const BiasReport& Perception::bias_report() const { return state_->bias->report(
 void Perception::CollectNotices(std::vector<Notice>& notices) const {
   state_->clock.CollectNotices(notices);
   state_->timeline.local().ego_reading().CollectNotices(notices);
+  state_->timeline.priority().CollectNotices(notices);
 }
 
 bool Perception::IsRadarAlive(int radar) const {

@@ -72,19 +72,23 @@ void PriorityPerception::ObservePairs(Link& link, const ClaimInOdometry& here) {
   const PriorityConfig& config = settings_->priority;
   const double dt_s = ToSeconds(here.stamp - sensed_stamp_);
   if (sensed_.empty() || dt_s > kMaxFrameAge_s) return;
-  if (IsOnAnotherLevel(link)) return;
+  // Who seems to be on another level is observed apart: it takes no track and rivals nobody, but
+  // should the difference turn out to be common to all, the observations count.
+  const bool is_apart = IsOnAnotherLevel(link);
+  PairTable& pairs = is_apart ? pairs_apart_ : pairs_;
+  if (!is_apart) pairs_.TakeFrom(pairs_apart_, link.sender, config.safe);
   const auto prior = PriorOf(link);
   bool has_changed = false;
   for (const Sensed& sensed : sensed_) {
     const double distance_m = (sensed.track.state_O.mean.head<2>() - here.p_O).norm();
-    const bool is_known = pairs_.Find(link.sender, sensed.track.id) != nullptr;
+    const bool is_known = pairs.Find(link.sender, sensed.track.id) != nullptr;
     if (distance_m > kPairReach_m && !is_known) continue;
     KinematicState state = sensed.track.state_O;
     if (dt_s > 0.0) PredictCtra(state, dt_s, config.filter.motion);
-    has_changed |= pairs_.Observe(link.sender, sensed.track.id, Compare(here, state), prior,
-                                  config.safe) != nullptr;
+    has_changed |= pairs.Observe(link.sender, sensed.track.id, Compare(here, state), prior,
+                                 config.safe) != nullptr;
   }
-  if (has_changed) pairs_.Assign(config.safe);
+  if (has_changed) pairs.Assign(config.safe);
 }
 
 // Raw residuals against the LOCAL track the sender is taken for. Hidden vehicles have none.

@@ -117,8 +117,9 @@ void PriorityPerception::Remember(const LocalFrame& frame, const VisibilityMap& 
         IsFresh(track, frame.stamp) ||
         std::ranges::find(frame.updates, track.id, &SensorUpdate::track_id) != frame.updates.end();
     // Coverage is asked for tracks that a sender may be; the question is not cheap.
-    const bool has_pair = std::ranges::any_of(
-        pairs_.pairs(), [&](const PairTable::Pair& pair) { return pair.track_id == track.id; });
+    const auto is_of_track = [&](const PairTable::Pair& pair) { return pair.track_id == track.id; };
+    const bool has_pair = std::ranges::any_of(pairs_.pairs(), is_of_track) ||
+                          std::ranges::any_of(pairs_apart_.pairs(), is_of_track);
     const bool is_sure = has_pair && AreSensorsSure(track, frame, map, settings_->vehicle,
                                                     settings_->priority.sensor_support);
     Sensed& sensed =

@@ -33,13 +33,6 @@ bool PriorityPerception::IsVouchedFor(const Link& link) const {
          });
 }
 
-// A bridge over us or a road below.
-bool PriorityPerception::IsOnAnotherLevel(const Link& link) const {
-  return link.height_m && ego_height_m_ &&
-         std::abs(*link.height_m - *ego_height_m_) >
-             settings_->priority.safe.max_height_difference_m;
-}
-
 bool PriorityPerception::IsRecent(const Link& link, Timestamp now) {
   return link.has_last && std::abs(ToSeconds(now - link.last.stamp)) <= kMaxClaimAge_s;
 }

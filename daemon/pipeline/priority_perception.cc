@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "daemon/geodesy/ecef.h"
 #include "daemon/trust/standard_classes.h"
 
 namespace v2vouch {
@@ -25,15 +26,19 @@ PriorityPerception::PriorityPerception(const PriorityConfig& config,
 void PriorityPerception::OnFix(const GnssFix& fix, const EgoState& ego, Outputs& outputs) {
   const bool was_ready = alignment_.is_ready();
   const Point<Odometry> here = ego.X_OB.origin();
-  const LocalPlane plane = alignment_.plane();
-  const Point<LocalEnu> before = was_ready ? alignment_.X_LO() * here : Point<LocalEnu>{};
+  const Wgs84 before = was_ready ? alignment_.ToGeodetic(here.vector(), 0.0) : Wgs84{};
   if (const auto refusal = alignment_.OnFix(fix, ego)) {
     return outputs.Refuse(*refusal, fix.stamp);
   }
-  if (fix.fix_type >= FixType::k3d) ego_height_m_ = Smoothed(ego_height_m_, fix.position.height_m);
-  if (!was_ready || !(plane.origin() == alignment_.plane().origin())) return;
-  const Point<LocalEnu> after = alignment_.X_LO() * here;
-  if ((after.vector() - before.vector()).norm() < kAlignmentStep_m) return;
+  if (!alignment_.is_ready()) return;
+  const double moved_m = ego_heights_at_ ? (here.vector() - *ego_heights_at_).norm() : 0.0;
+  ego_heights_at_ = here.vector();
+  const bool has_height = fix.has_height && fix.fix_type >= FixType::k3d;
+  ego_heights_.Add(ego.stamp, std::copysign(moved_m, ego.speed_mps),
+                   has_height ? std::optional(fix.position.height_m) : std::nullopt);
+  if (!was_ready) return;
+  const Wgs84 after = alignment_.ToGeodetic(here.vector(), 0.0);
+  if ((ToEcef(after).p_E - ToEcef(before).p_E).norm() < kAlignmentStep_m) return;
   // The alignment has moved under all senders at once: what was learnt of them starts again from
   // the priors, and nobody is blamed.
   const double sigma_m = settings_->priority.filter.bias_sigma_m;
@@ -61,7 +66,9 @@ void PriorityPerception::OnFrame(const LocalFrame& frame, const VisibilityMap& m
   LookAtClaims(frame, map, outputs);
   DropEnded();
   JudgeCommonMode(frame.stamp);
+  JudgeHeights(frame.stamp);
   pairs_.Expire(frame.stamp, config.safe);
+  pairs_apart_.Expire(frame.stamp, config.safe);
   std::erase_if(links_, [&](const Link& link) {
     return VehicleOf(link.sender) == nullptr &&
            ToSeconds(frame.stamp - link.last.stamp) > config.contact_s;
@@ -80,6 +87,7 @@ void PriorityPerception::OnClaim(const Claim& claim, const EgoState& ego, Output
   Link* link = FollowSender(claim, here, ego);
   if (link == nullptr) return;
   PriorityVehicle* vehicle = VehicleOf(link->sender);
+  FollowHeight(*link, claim, here, ego);
   if (has_place && IsSomebodyElses(*link, vehicle, here)) {
     return outputs.Refuse(Reason::kBsmContradicted, claim.received);
   }
@@ -197,8 +205,8 @@ std::vector<BiasResidual> PriorityPerception::TakeResiduals() {
 
 std::size_t PriorityPerception::checkpoint_bytes() const {
   return sizeof(*this) + links_.size() * sizeof(Link) + sensed_.size() * sizeof(Sensed) +
-         pairs_.pairs().size_bytes() + vehicles_.size() * sizeof(PriorityVehicle) +
-         paper_.entries().size_bytes();
+         pairs_.pairs().size_bytes() + pairs_apart_.pairs().size_bytes() +
+         vehicles_.size() * sizeof(PriorityVehicle) + paper_.entries().size_bytes();
 }
 
 const PriorityPerception::Link* PriorityPerception::FindLink(SenderId sender) const {

@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "daemon/alignment/alignment.h"
+#include "daemon/association/height_offset.h"
+#include "daemon/association/height_track.h"
 #include "daemon/association/pair_table.h"
 #include "daemon/association/paper_list.h"
+#include "daemon/base/notice.h"
 #include "daemon/base/scratch.h"
 #include "daemon/data/bias.h"
 #include "daemon/data/claim.h"
@@ -74,6 +77,8 @@ class PriorityPerception {
   [[nodiscard]] bool is_ego_gnss_suspect() const {
     return alignment_.is_suspect() || IsShifted(sensed_stamp_);
   }
+  /// Appends what the heights say of the ego's receiver.
+  void CollectNotices(std::vector<Notice>& notices) const;
   /// Bias of a validated sender; nullopt: nothing learnt. Axes east and north.
   [[nodiscard]] std::optional<BiasEstimate> BiasOf(SenderId sender) const;
   /// Raw sensor-confirmed residuals of the last event, at most one.
@@ -110,7 +115,14 @@ class PriorityPerception {
     std::uint64_t compared_id = 0;   // LOCAL track of the last residual; 0 = none.
     int breaks = 0;                  // Above 0: its messages lately did not continue each other.
     int odd_claims = 0;              // In a row that are not where the sensors see the sender.
-    std::optional<double> height_m;  // Smoothed.
+    HeightTrack heights;
+    std::optional<Timestamp> heights_at;  // Of the last message.
+    // Beside the ego's height when last heard: the difference to be expected at its place is from
+    // `least` to `most`, less what is common to all.
+    std::optional<double> height_difference_m;
+    double least_difference_m = 0.0;
+    double most_difference_m = 0.0;
+    double agreed_m = 0.0;  // Way for which a LOCAL track agreed with it, whatever its height.
     std::optional<BiasEstimate> prior_en;
     std::uint64_t heir_of = 0;  // Vehicle it may continue under this new id; 0 = none.
     int heir_claims = 0;
@@ -132,11 +144,6 @@ class PriorityPerception {
   };
   static constexpr double kOnePlace_m = 2.0;       // Centres of two vehicles are never so close.
   static constexpr double kStandingReach_m = 2.0;  // Standing returns so near may be a vehicle.
-  // GNSS heights are noisy.
-  static double Smoothed(const std::optional<double>& old, double value) {
-    constexpr double kNewest = 0.1;
-    return old ? *old + kNewest * (value - *old) : value;
-  }
   static bool IsRecent(const Link& link, Timestamp now);
   struct Settings {
     PriorityConfig priority;
@@ -193,6 +200,12 @@ class PriorityPerception {
   [[nodiscard]] static double MarginOverUnseen(const Link& link, const PairTable::Pair& pair);
   void JudgeCommonMode(Timestamp now);
 
+  // Heights.
+  void FollowHeight(Link& link, const Claim& claim, const ClaimInOdometry& here,
+                    const EgoState& ego);
+  void CountAgreement(Link& link, const ClaimInOdometry& here, double moved_m);
+  void JudgeHeights(Timestamp now);
+
   // Claim.
   bool IsSomebodyElses(Link& link, const PriorityVehicle* vehicle, const ClaimInOdometry& here);
   void JudgeMessages(Link& link, const PriorityVehicle* vehicle, const Claim& claim,
@@ -215,7 +228,9 @@ class PriorityPerception {
 
   std::shared_ptr<const Settings> settings_;
   Alignment alignment_;
-  std::optional<double> ego_height_m_;
+  HeightTrack ego_heights_;
+  std::optional<Eigen::Vector2d> ego_heights_at_;  // Place of the last fix.
+  HeightOffset height_offset_;
   std::vector<Link> links_;  // By sender.
   double turns_ = 0.0;       // Newcomers that may take another's place.
   std::optional<Timestamp> turns_refilled_;
@@ -224,6 +239,8 @@ class PriorityPerception {
   Scratch<std::vector<SenderResidual>> residual_means_;
   Scratch<std::vector<PartialLooks>> parts_;
   PairTable pairs_;
+  PairTable pairs_apart_;  // Of senders on another level: they neither take tracks nor rival.
+  Scratch<std::vector<HeightWitness>> witnesses_;
   std::vector<PriorityVehicle> vehicles_;  // By id; id 0 = ended in this step.
   Tombstones tombstones_;
   RestoredTrust restored_;  // Of senders not heard since the start.

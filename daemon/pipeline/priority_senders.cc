@@ -106,7 +106,6 @@ PriorityPerception::Link* PriorityPerception::FollowSender(const Claim& claim,
   link->length_m = claim.length_m;
   link->width_m = claim.width_m;
   link->certificate = claim.certificate;
-  if (claim.has_elevation) link->height_m = Smoothed(link->height_m, claim.height_m);
   return link;
 }
 
@@ -148,6 +147,7 @@ bool PriorityPerception::MakeRoom(bool for_penalised) {
   }
   if (least == links_.end()) return false;
   pairs_.DropSender(least->sender);
+  pairs_apart_.DropSender(least->sender);
   links_.erase(least);
   return true;
 }

@@ -54,6 +54,8 @@ class Scene {
     fix.velocity_en_mps = Eigen::Vector2d::Zero();
     fix.velocity_sigma_mps = 0.05;
     fix.fix_type = FixType::k3d;
+    fix.has_height = has_height;
+    if (!has_height) fix.position.height_m = 0.0;
     EgoState at_fix = Ego();
     perception.OnFix(fix, at_fix, outputs);
     now += FromSeconds(0.001);
@@ -196,6 +198,7 @@ class Scene {
     return list.tracks;
   }
 
+  bool has_height = true;  // Of the fixes.
   VehicleConfig vehicle;
   LocalPlane plane{kHome};
   Timestamp now = FromMicros(1'700'000'000'000'000);
