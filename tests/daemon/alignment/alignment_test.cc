@@ -96,6 +96,31 @@ TEST(Alignment, AnExactReceiverGivesAnExactAlignmentInTurnsAndInReverse) {
   EXPECT_FALSE(alignment.is_suspect());
 }
 
+// The drift that was estimated against GNSS must not be taken off twice.
+TEST(Alignment, WhatOdometryLearnsIsNoLongerLeftForIt) {
+  const VehicleConfig vehicle;
+  DriveErrors errors;
+  errors.yaw_rate_bias_radps = FromDegrees(0.5);
+  errors.speed_scale = 0.03;
+  errors.white_sigma_m = 0.05;
+  errors.velocity_sigma_mps = 0.1;
+  SimulatedDrive drive(kTown, 0.3, errors);
+  Alignment alignment(AlignmentConfig{}, vehicle);
+  Drive(drive, alignment, vehicle, 10.0, 0.0, 60.0);
+  Drive(drive, alignment, vehicle, 0.0, 0.0, 5.0);
+  drive.LearnOdometry();
+  Drive(drive, alignment, vehicle, 0.0, 0.0, 1.0);
+  double worst_rad = 0.0;
+  double worst_m = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    Drive(drive, alignment, vehicle, 10.0, 0.0, 0.5);
+    worst_rad = std::max(worst_rad, std::abs(drive.ErrorOf(alignment)(2)));
+    worst_m = std::max(worst_m, drive.ErrorOf(alignment).head<2>().norm());
+  }
+  EXPECT_LT(ToDegrees(worst_rad), 0.6);
+  EXPECT_LT(worst_m, 0.3);
+}
+
 TEST(Alignment, StartsInReverse) {
   const VehicleConfig vehicle;
   SimulatedDrive drive(kTown, 0.3, {});

@@ -57,7 +57,17 @@ class SimulatedDrive {
     ego.X_OB = {odometry_.x(), odometry_.y(), odometry_yaw_};
     ego.speed_mps = speed_ * (1.0 + errors_.speed_scale);
     ego.yaw_rate_radps = yaw_rate_ + errors_.yaw_rate_bias_radps;
+    ego.gyro_offset_radps = learnt_bias_radps_;
+    ego.speed_factor = learnt_factor_;
     return ego;
+  }
+
+  /// From now on odometry takes off its yaw rate bias and scales its speed to the true one.
+  void LearnOdometry() {
+    learnt_bias_radps_ = errors_.yaw_rate_bias_radps;
+    learnt_factor_ = 1.0 / (1.0 + errors_.speed_scale);
+    errors_.yaw_rate_bias_radps = 0.0;
+    errors_.speed_scale = 0.0;
   }
 
   /// A fix of this moment, with velocity and without heading.
@@ -125,6 +135,8 @@ class SimulatedDrive {
   Eigen::Vector2d odometry_ = Eigen::Vector2d::Zero();
   double odometry_yaw_ = 0.0;
   DriveErrors errors_;
+  double learnt_bias_radps_ = 0.0;
+  double learnt_factor_ = 1.0;
   Random random_;
   Eigen::Vector2d markov_ = Eigen::Vector2d::Zero();
   double time_s_ = 0.0;
