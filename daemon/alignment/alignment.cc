@@ -182,7 +182,7 @@ void Alignment::Agree(double dt_s, const EgoState& ego) {
     if (!agrees_since_) agrees_since_ = ego.stamp;
     // Between openings the votes decide; a fix for the present one is not kept waiting.
     const double agreed_s = ToSeconds(ego.stamp - *agrees_since_);
-    if (agreed_s >= kAgree_s || !was_established) is_suspect_ = false;
+    if (agreed_s >= kAgree_s || support_s_ < kEstablished_s) is_suspect_ = false;
   }
   if (suspect_until_ && ego.stamp >= *suspect_until_) {
     suspect_until_.reset();

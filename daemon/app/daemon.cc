@@ -29,7 +29,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPopTimeout{20};
 constexpr std::chrono::seconds kHousekeeping{1};
-constexpr milliseconds kStatusAtLatest{1500};  // Where no message comes.
+constexpr milliseconds kStatusAtLatest{1100};  // Where no message comes.
 constexpr int kMostRefusalLines = 20;          // Per second.
 constexpr milliseconds kSuspended{500};        // Between two turns of the loop.
 
@@ -164,13 +164,13 @@ class Daemon {
       Publish();
     }
     if (trust_.IsDue(now)) trust_.Keep(engine_.TrustToKeep(), now);
+    LogNotices();
     if (now - last_housekeeping_ >= kHousekeeping) {
       last_housekeeping_ = now;
       RefreshFigures();
       LogRefusals();
       LogMounts();
       ReportWaiting();
-      LogNotices();
     }
   }
 

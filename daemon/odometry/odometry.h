@@ -22,7 +22,7 @@ namespace v2vouch {
 /// turn for ever). Extrapolation never turns braking into reversing.
 ///
 /// O starts at the first sample (0, 0, 0). Across a gap longer than kMaxGap_s the pose is carried
-/// on by the same rule: O stays continuous, but by a guess. Copyable, fixed size (about 10 kB): a
+/// on by the same rule: O stays continuous, but by a guess. Copyable, fixed size (about 11 kB): a
 /// copy is a checkpoint. Holds a short history so that late frames find their pose.
 class EgoOdometry {
  public:

@@ -2,6 +2,7 @@
 #include "daemon/program/command_line.h"
 
 #include <cstdio>
+#include <sstream>
 
 #include "daemon/base/did_you_mean.h"
 
@@ -42,7 +43,11 @@ std::optional<int> ReadCommandLine(CLI::App& app, const std::string& name, int a
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
-      app.exit(error);  // --help and --version print and end.
+      // --help and --version print and end. Not through std::cout, which CLI11 flushes: why it
+      // could not be written must still be known at the end.
+      std::ostringstream text;
+      app.exit(error, text, text);
+      std::fputs(text.str().c_str(), stdout);
       return kExitGood;
     }
     const std::string hints = Hints(app);

@@ -58,7 +58,7 @@ class LiveSilence : public ::testing::Test {
   }
 
   /// Plays `messages` to the daemon, which is stopped from `stop_at` on for `stop_for`, and listens
-  /// on for 2 s more.
+  /// on for 3 s more.
   Heard Play(const std::vector<WireMessage>& messages, std::chrono::milliseconds stop_at = 0ms,
              std::chrono::milliseconds stop_for = 0ms) {
     std::string error;
@@ -80,7 +80,7 @@ class LiveSilence : public ::testing::Test {
       daemon.Signal(SIGCONT);
     }
     EXPECT_EQ(player.Wait(30s), 0);
-    std::this_thread::sleep_for(2s);
+    std::this_thread::sleep_for(3s);
     daemon.Signal(SIGTERM);
     EXPECT_EQ(daemon.Wait(5s), 0) << daemon.Output();
     logger.Signal(SIGINT);

@@ -305,7 +305,7 @@ TEST(Engine, GpsBiasIsToldInTheStatusUnlessItIsSwitchedOff) {
   EXPECT_EQ(on.gps_bias.num_quarantined, 0);
   EXPECT_LT(std::hypot(sender.east_m, sender.north_m), 1.0);
   EXPECT_GT(sender.covariance_m2[0], 0.0);
-  EXPECT_EQ(sender.covariance_m2[1], sender.covariance_m2[2]);
+  EXPECT_DOUBLE_EQ(sender.covariance_m2[1], sender.covariance_m2[2]);
   const daemon_status_t off = last_status(false);
   EXPECT_EQ(off.gps_bias.utime, 0);
   EXPECT_EQ(off.gps_bias.num_senders, 0);

@@ -101,7 +101,7 @@ TEST(PredictCtra, StandingVehicleKeepsItsDirection) {
   KinematicState state;
   state.mean << 5, 5, 1.0, 0.0, 0.4, 0.0;  // A turn that ended in a stop.
   state.covariance = 1e-4 * StateMatrix::Identity();
-  PredictCtra(state, 60.0, kNoise);
+  for (int i = 0; i < 60; ++i) PredictCtra(state, 1.0, kNoise);
   EXPECT_NEAR(state.mean[kYaw], 1.0, 1e-9);
   EXPECT_LT(std::abs(state.mean[kYawRate]), 1e-9);
   EXPECT_LT(state.covariance(kYaw, kYaw), 2e-4);

@@ -98,7 +98,9 @@ TEST(PriorityValidation, CarOnTheBridgeAboveIsNotTheCarBelow) {
 TEST(PriorityValidation, NobodyIsValidatedWhileTheEgosPlaceIsInDoubt) {
   Scene scene;
   scene.cars = {OncomingCar()};
-  scene.Run(0.5, [] {});
+  // Before that it is one of several openings, and simply overruled.
+  scene.Run(12.0, [&] { scene.Fix(); });
+  scene.cars = {OncomingCar()};
   for (int i = 0; i < 5; ++i) scene.Fix({50.0, 0.0});
   ASSERT_TRUE(scene.perception.alignment().is_suspect());
   scene.Run(4.0, [&] {

@@ -157,7 +157,7 @@ TEST(AnnotateLog, WhatIsMissingIsNamed) {
   EXPECT_TRUE(AnnotateLog(request, take, result, error)) << error;
   request.camera = "REAR";
   EXPECT_FALSE(AnnotateLog(request, take, result, error));
-  EXPECT_EQ(error, "the vehicle has no camera REAR");
+  EXPECT_EQ(error, "the vehicle has no camera REAR; it has FRONT");
   request.config_path = "/nowhere.yaml";
   EXPECT_FALSE(AnnotateLog(request, take, result, error));
   request.log = "/nowhere.lcm";

@@ -46,7 +46,7 @@ TEST(V2vouchImport, TellsUsageErrorsFromFailures) {
   EXPECT_EQ(Import("sumo-fcd f.csv --out-scenario o --v2v-share 1.5").code, 2);
   const Finished missing = Import("comma2k19 /nonexistent --out /tmp/x.lcm");
   EXPECT_EQ(missing.code, 1);
-  EXPECT_THAT(missing.output, HasSubstr("/nonexistent/radar_tracks.csv: cannot be opened"));
+  EXPECT_THAT(missing.output, HasSubstr("/nonexistent: is no folder"));
 }
 
 TEST(V2vouchImport, ADriveBecomesALogOfAllItsChannels) {

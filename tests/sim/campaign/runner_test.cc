@@ -184,10 +184,10 @@ TEST_F(Runner, ConfigurationsGainTheVerdictsAndKeepTheRest) {
       << "calibration: cal/mine.yaml\ndetector: {model: net.onnx, network: /a.cfg}\n";
   ASSERT_TRUE(WriteConfig(from, to, problem)) << problem;
   std::ifstream copy(to);
-  const std::string text(std::istreambuf_iterator<char>(copy), {});
-  EXPECT_THAT(text, testing::HasSubstr("calibration: " + (folder_ / "cal/mine.yaml").string()));
-  EXPECT_THAT(text, testing::HasSubstr("model: " + (folder_ / "net.onnx").string()));
-  EXPECT_THAT(text, testing::HasSubstr("network: /a.cfg"));
+  const std::string copied(std::istreambuf_iterator<char>(copy), {});
+  EXPECT_THAT(copied, testing::HasSubstr("calibration: " + (folder_ / "cal/mine.yaml").string()));
+  EXPECT_THAT(copied, testing::HasSubstr("model: " + (folder_ / "net.onnx").string()));
+  EXPECT_THAT(copied, testing::HasSubstr("network: /a.cfg"));
   EXPECT_TRUE(WriteConfig("", to, problem));
   EXPECT_FALSE(WriteConfig(folder_ / "nosuch.yaml", to, problem));
   EXPECT_THAT(problem, HasSubstr("nosuch.yaml"));
