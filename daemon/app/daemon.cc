@@ -300,6 +300,7 @@ class Daemon {
 
   DaemonSummary Summary() {
     summary_.accepted = engine_.accepted();
+    summary_.withheld_lists = engine_.withheld();
     summary_.queue_drops_own = queue_.own_drops();
     summary_.queue_drops_bsm = queue_.bsm_drops();
     summary_.refused = engine_.refusals();

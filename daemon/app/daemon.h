@@ -14,6 +14,7 @@ struct DaemonSummary {
   std::int64_t accepted = 0;
   std::int64_t lists = 0;
   std::int64_t stale_lists = 0;
+  std::int64_t withheld_lists = 0;  ///< Older than a predicted copy that had gone out.
   std::int64_t queue_drops_own = 0;
   std::int64_t queue_drops_bsm = 0;
   ReasonCounts refused{};

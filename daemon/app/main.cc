@@ -47,10 +47,11 @@ std::unique_ptr<v2vouch::ObjectDetector> LoadDetector(const v2vouch::DaemonConfi
 
 void PrintSummary(const v2vouch::DaemonSummary& summary) {
   spdlog::info(
-      "event=stopped accepted={} lists={} stale_lists={} queue_drops_own={} "
+      "event=stopped accepted={} lists={} stale_lists={} withheld_lists={} queue_drops_own={} "
       "queue_drops_bsm={} digest_local={} digest_priority={}",
-      summary.accepted, summary.lists, summary.stale_lists, summary.queue_drops_own,
-      summary.queue_drops_bsm, summary.digest_local, summary.digest_priority);
+      summary.accepted, summary.lists, summary.stale_lists, summary.withheld_lists,
+      summary.queue_drops_own, summary.queue_drops_bsm, summary.digest_local,
+      summary.digest_priority);
   for (std::size_t i = 0; i < v2vouch::kReasonCount; ++i) {
     if (summary.refused[i] == 0) continue;
     spdlog::info("event=refused_in_all reason={} total={}",

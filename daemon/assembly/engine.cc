@@ -174,7 +174,10 @@ void Engine::PublishLists(Outbox& outbox) {
 }
 
 void Engine::Send(const std::string& channel, Timestamp stamp, Timestamp& newest, Outbox& outbox) {
-  if (stamp < newest) return;
+  if (stamp < newest) {
+    if (channel == config_.lcm.channels.tracks_local) ++withheld_;
+    return;
+  }
   newest = stamp;
   outbox.Add(channel).assign(list_bytes_.begin(), list_bytes_.end());
 }

@@ -105,6 +105,8 @@ class Engine {
   [[nodiscard]] const std::vector<MountVerdict>& mounts() const { return monitor_.verdicts(); }
   /// What began or ended since the last call, as of the last status.
   std::vector<NoticeBoard::Change> TakeNoticeChanges() { return notices_.TakeChanges(); }
+  /// LOCAL lists that stayed in because a predicted copy of a later time had gone out.
+  [[nodiscard]] std::int64_t withheld() const { return withheld_; }
   /// Whether the last OnMessage or OnDetections gave new lists.
   [[nodiscard]] bool has_lists() const { return has_lists_; }
 
@@ -137,6 +139,7 @@ class Engine {
     Timestamp priority{};
   } published_;  // Newest time that went out, stale copies included.
   std::vector<std::uint8_t> list_bytes_;
+  std::int64_t withheld_ = 0;
   bool has_lists_ = false;
 };
 

@@ -179,7 +179,9 @@ TEST_F(LiveDaemon, FedByLcmLogplayerGivesTheDigestsOfTheReplay) {
   ASSERT_TRUE(reader) << error;
   LogEvent event;
   while (reader->Next(event)) ++recorded[event.channel];
-  EXPECT_GE(recorded["TRACKS_LOCAL"], offline["lists"].get<int>());
+  // On a machine that lags, predicted copies go out first, and published time does not go back.
+  EXPECT_GE(recorded["TRACKS_LOCAL"] + std::atoi(Word(words, "withheld_lists").c_str()),
+            offline["lists"].get<int>());
   EXPECT_GE(recorded["V2VOUCH_STATUS"], 2);
   EXPECT_EQ(recorded["V2VOUCH_CONFIG"], 1);
 }
