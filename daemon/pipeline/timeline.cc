@@ -41,6 +41,13 @@ constexpr std::size_t kLongestRun = 64;
 
 // Late claims that may wait for the next frame, at most: frames may fail to come.
 constexpr int kMostWaiting = 256;
+// What one late claim may cause to be run again, in claims (some 15 us each). A backlog that is
+// older would cost so much that it never ends. A frame looks at every sender that is followed: it
+// costs the more, the more has come lately.
+constexpr std::size_t kDeepestClaim = 256;
+constexpr std::size_t kDearestFrame = 16;
+constexpr std::size_t kEventsPerClaim = 112;
+
 void NameSource(const EventKey& key, Diagnostic& diagnostic) {
   constexpr InputSource kSources[] = {InputSource::kEgoMotion, InputSource::kGnss,
                                       InputSource::kRadar, InputSource::kCamera, InputSource::kBsm};
@@ -158,6 +165,18 @@ bool Timeline::IsAffordable(const TimelineInput& input) {
   return true;
 }
 
+bool Timeline::IsTooDeep(const EventKey& claim) const {
+  const std::size_t per_frame = 1 + std::min(kDearestFrame, events_.size() / kEventsPerClaim);
+  std::size_t cost = 0;
+  for (auto event = events_.rbegin(); event != events_.rend(); ++event) {
+    const bool is_before = (*event)->key <= claim;
+    if (is_before && (event == events_.rbegin() || (*event)->after)) return false;
+    cost += (*event)->has_frame ? per_frame : (*event)->key.rank == kEgoRank ? 0 : 1;
+    if (cost > kDeepestClaim) return true;
+  }
+  return false;
+}
+
 Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outputs& outputs) {
   const EventKey key = KeyOf(input);
   AdvanceTo(agreed);
@@ -166,7 +185,7 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outp
     return {};
   }
   const bool is_local = IsLocal(input);
-  if (is_local && !IsAffordable(input)) {
+  if ((is_local && !IsAffordable(input)) || (key.rank == kClaimRank && IsTooDeep(key))) {
     outputs.Refuse(Reason::kOverBudget, key.time);
     return {};
   }

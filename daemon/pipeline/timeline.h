@@ -122,6 +122,8 @@ class Timeline {
   /// Both from event `from` to the newest. @return the number of frames / V2V events stepped.
   int RunLocal(std::size_t from, Outputs& outputs);
   int RunPriority(std::size_t from, Outputs& outputs);
+  /// A late claim so far back among so many others that it is not worth running them again.
+  [[nodiscard]] bool IsTooDeep(const EventKey& claim) const;
   /// Whether the V2V side may wait with event `place`, which was just put in.
   [[nodiscard]] bool MayWait(std::size_t place, bool is_last) const;
   void EmitOnce(Event& event, const Outputs& step, Outputs& outputs);

@@ -144,6 +144,7 @@ TEST(LateData, LateClaimsAreRunTogetherWithTheNextFrame) {
     Timeline timeline(ConfigOf(drive));
     Outputs outputs;
     Newest newest;
+    int tried = 0;
     int claims = 0;
     int frames = 0;
     int steps = 0;
@@ -152,12 +153,13 @@ TEST(LateData, LateClaimsAreRunTogetherWithTheNextFrame) {
       // 2000 claims a second, in order among themselves.
       for (; next <= HeaderOf(input).stamp; next += FromSeconds(0.0005)) {
         Claim claim;
-        claim.sender = static_cast<SenderId>(100 + claims % 200);
+        claim.sender = static_cast<SenderId>(100 + tried % 200);
         claim.received = next - FromSeconds(late_s);
         const auto placement =
-            timeline.Insert(TimedClaim{claim, claims, std::nullopt}, newest.Hear(next), outputs);
+            timeline.Insert(TimedClaim{claim, tried, std::nullopt}, newest.Hear(next), outputs);
         steps += placement.v2v_events;
         if (placement.is_taken) ++claims;
+        ++tried;
       }
       const auto event = ForTimeline(input);
       if (!event) continue;
@@ -170,6 +172,31 @@ TEST(LateData, LateClaimsAreRunTogetherWithTheNextFrame) {
     const double per_frame = 2050.0 * (late_s + 0.06);
     EXPECT_LE(steps, claims + frames * per_frame) << late_s;
   }
+}
+
+// One that is 0.3 s late in the middle of 2000 a second would have 600 run again.
+TEST(LateData, AClaimFarBackAmongManyIsRefusedAndCounted) {
+  const SyntheticDrive drive = Traffic(1.0);
+  Timeline timeline(ConfigOf(drive));
+  Outputs outputs;
+  Newest newest;
+  Claim claim;
+  Timestamp next = DriveStart() + FromSeconds(0.1);
+  for (const Input& input : MakeInputs(drive)) {
+    const auto event = ForTimeline(input);
+    if (event) timeline.Insert(*event, newest.Hear(HeaderOf(input).stamp), outputs);
+    for (; next <= HeaderOf(input).stamp; next += FromSeconds(0.0005)) {
+      claim.received = next;
+      timeline.Insert(TimedClaim{claim, 0, std::nullopt}, newest.Hear(next), outputs);
+    }
+  }
+  outputs.Clear();
+  claim.received = next - FromSeconds(0.3);
+  EXPECT_FALSE(timeline.Insert(TimedClaim{claim, 1, std::nullopt}, next, outputs).is_taken);
+  ASSERT_EQ(outputs.diagnostics.size(), 1u);
+  EXPECT_EQ(outputs.diagnostics[0].reason, Reason::kOverBudget);
+  claim.received = next - FromSeconds(0.03);
+  EXPECT_TRUE(timeline.Insert(TimedClaim{claim, 2, std::nullopt}, next, outputs).is_taken);
 }
 
 // An ego sample in order, or late but newer than every frame, costs no frame at all.
