@@ -38,6 +38,7 @@ std::string Find(const std::string& name, const std::filesystem::path& shipped, 
   std::error_code ignored;
   if (std::filesystem::exists(name, ignored)) return name;
   if (std::filesystem::is_regular_file(shipped, ignored)) return shipped.string();
+  if (!problem.empty()) problem += "  and ";
   problem += name + ": no such file, and no shipped " + what + " of this name" +
              DidYouMean(name, known) + "; `v2vouch-sim list` shows them\n";
   return name;

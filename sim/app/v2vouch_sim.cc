@@ -126,7 +126,7 @@ int main(int argc, char** argv) {
     options.overlays.push_back(FindOverlay(overlay, problem));
   }
   if (!problem.empty()) {
-    std::fprintf(stderr, "%s", problem.c_str());
+    std::fprintf(stderr, "v2vouch-sim: %s", problem.c_str());
     return kUsage;
   }
   if (!sensors.empty()) options.settings.push_back("sensors.mode=" + sensors);

@@ -67,7 +67,7 @@ bool AreSuited(const Overlay& overlay, const Job& job) {
 
 // What to say of a name that is not in the catalogue, or in it as the other kind.
 std::string Unknown(const std::string& item, Kind kind, const std::vector<Overlay>& catalogue) {
-  std::vector<std::string> names = {"all", "none"};
+  std::vector<std::string> names = {"all", "none"}, variants;
   for (const Overlay& overlay : catalogue) {
     const bool is_it = item == overlay.id || item == overlay.name();
     if (is_it && overlay.kind != kind) {
@@ -76,10 +76,13 @@ std::string Unknown(const std::string& item, Kind kind, const std::vector<Overla
     }
     if (overlay.kind != kind) continue;
     names.push_back(overlay.id);
+    if (item.starts_with(overlay.id + "/")) variants.push_back(overlay.name());
     names.push_back(overlay.name());
   }
+  std::string hint = DidYouMean(item, names);
+  if (hint.empty() && !variants.empty()) hint = " (there are " + Listed(variants) + ")";
   return std::string(": no such ") + (kind == Kind::kAttack ? "attack" : "honest condition") +
-         " in the catalogue" + DidYouMean(item, names) + "; `v2vouch-sim list` shows them";
+         " in the catalogue" + hint + "; `v2vouch-sim list` shows them";
 }
 
 std::string KeyPart(std::string_view text) {

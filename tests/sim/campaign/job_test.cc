@@ -132,9 +132,10 @@ TEST(Jobs, WithoutOverlaysThePlainRunsAreThePlan) {
   Plan plan;
   plan.scenarios = {"urban"};
   plan.densities = {0};
-  plan.with_plain = false;
   ASSERT_EQ(Jobs(plan).size(), 1u);
   EXPECT_EQ(Jobs(plan)[0].overlay.kind, Kind::kPlain);
+  plan.with_plain = false;  // Then nothing was asked for.
+  EXPECT_TRUE(Jobs(plan).empty());
 }
 
 }  // namespace
