@@ -112,6 +112,9 @@ CalibrationVerdict VerdictOf(double value, double data_std, double prior, double
 std::string HintFor(const std::string& name, CalibrationVerdict verdict,
                     const Excitation& excitation) {
   if (verdict != CalibrationVerdict::kPrior && verdict != CalibrationVerdict::kWeak) return "";
+  if (Contains(name, "odometer_y") || Contains(name, "slip")) {  // However long the drive.
+    return "held by what is known of the car; only a reference outside it could tell more";
+  }
   const auto is_unheard = [&](const std::string& sensor) {
     const auto found = excitation.messages.find(sensor);
     return found != excitation.messages.end() && found->second == 0;
@@ -131,9 +134,6 @@ std::string HintFor(const std::string& name, CalibrationVerdict verdict,
   }
   const bool is_place = Contains(name, ".x_m") || Contains(name, ".y_m");
   const bool is_ego_place = Contains(name, "antenna") || Contains(name, "odometer_y");
-  if (Contains(name, "odometer_y") || Contains(name, "slip")) {
-    return "held by what is known of the car; only a reference outside it could tell more";
-  }
   if ((is_place || is_ego_place) && excitation.yaw_rate_rms_radps < 0.05) {
     return "no turns: drive a roundabout, left and right bends";
   }

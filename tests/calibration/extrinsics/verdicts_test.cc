@@ -109,6 +109,7 @@ TEST(HintFor, SaysWhatDrivingWouldHelp) {
   brief.duration_s = 18.0;
   brief.moving_s = 15.0;
   EXPECT_THAT(HintFor("radar_front.x_m", kPrior, brief), HasSubstr("only 15 s of driving"));
+  EXPECT_THAT(HintFor("ego.slip_s2pm", kPrior, brief), HasSubstr("only a reference outside it"));
   Excitation deaf = straight;
   deaf.messages = {{"radar_front", 900}, {"camera_front", 0}, {"gnss", 20}, {"gnss_heading", 0}};
   EXPECT_EQ(HintFor("camera_front.yaw_deg", kPrior, deaf),
