@@ -12,12 +12,6 @@ namespace {
 
 constexpr Duration kStatusPeriod = std::chrono::seconds(1);
 
-// Diagnostics that report something else than "this input was not taken".
-bool RefusesTheInput(Reason reason) {
-  return reason != Reason::kClockRestart && reason != Reason::kTrackNumerics &&
-         reason != Reason::kSenderNumerics && reason != Reason::kTrackTableFull;
-}
-
 std::unique_ptr<BiasEstimator> MakeBiasEstimator(const GpsBiasConfig& config) {
   if (!config.enabled) return std::make_unique<NullBiasEstimator>();
   return std::make_unique<GpsBias>(config);
@@ -120,8 +114,7 @@ std::size_t Engine::ChannelOf(const Diagnostic& diagnostic, std::size_t current)
 }
 
 void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
-  perception_.Step(input, outputs_);
-  bool is_accepted = true;
+  const auto refusal = perception_.Step(input, outputs_);
   for (const Diagnostic& diagnostic : outputs_.diagnostics) {
     Refuse(ChannelOf(diagnostic, channel), {diagnostic.reason, diagnostic.field});
     if (diagnostic.reason == Reason::kClockRestart) {
@@ -129,14 +122,9 @@ void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
       monitor_.Restart();
       published_ = {};
     }
-    // A frame brings to light what became of claims that waited for it.
-    const bool is_claims =
-        diagnostic.reason == Reason::kBsmContradicted || diagnostic.reason == Reason::kNoGnss;
-    if (is_claims && !std::holds_alternative<Bsm>(input)) continue;
-    if (RefusesTheInput(diagnostic.reason)) is_accepted = false;
   }
-  const MessageHeader& header = HeaderOf(input);
-  if (is_accepted) {
+  if (!refusal) {
+    const MessageHeader& header = HeaderOf(input);
     watch_.Accepted(channel, header.stamp, header.seq);
     Monitor(input);
   }

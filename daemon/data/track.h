@@ -61,6 +61,10 @@ struct LocalTrack {
   [[nodiscard]] Timestamp LastHit() const {
     return std::max(last_radar.value_or(Timestamp{}), last_camera.value_or(Timestamp{}));
   }
+  /// Whether a sensor measured it at this very time.
+  [[nodiscard]] bool IsHitAt(Timestamp stamp) const {
+    return last_radar == stamp || last_camera == stamp;
+  }
   /// The extent that models of what sensors report of it must use.
   [[nodiscard]] Extent ModelExtent() const { return is_point ? Extent{0, 0, 0, 0} : extent; }
 };

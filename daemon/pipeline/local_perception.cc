@@ -54,16 +54,6 @@ double DistanceToSensor(const EgoState& ego, double x_m, double y_m, const Local
 
 }  // namespace
 
-Occluder FootprintOf(const LocalTrack& track) {
-  const auto& P = track.state_O.covariance;
-  return {.id = track.id,
-          .centre_O = track.state_O.mean.head<2>(),
-          .yaw_rad = track.state_O.mean[kYaw],
-          .length_m = track.extent.length_m,
-          .width_m = track.extent.width_m,
-          .position_sigma_m = std::sqrt(std::max(0.0, 0.5 * (P(kX, kX) + P(kY, kY))))};
-}
-
 LocalPerception::LocalPerception(const PerceptionConfig& config)
     : vehicle_(std::make_shared<const VehicleConfig>(config.vehicle)),
       ego_reading_(config.ego_motion),

@@ -75,7 +75,4 @@ class LocalPerception {
   Scratch<std::vector<char>> radar_alive_, camera_alive_;
 };
 
-/// The footprint of a track as the visibility map wants it.
-Occluder FootprintOf(const LocalTrack& track);
-
 }  // namespace v2vouch

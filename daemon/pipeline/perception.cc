@@ -7,7 +7,7 @@
 #include "daemon/models/ctra.h"
 #include "daemon/pipeline/source_clock.h"
 #include "daemon/pipeline/timeline.h"
-#include "daemon/pipeline/v2v_list.h"
+#include "daemon/v2v_perception/sender_list.h"
 
 namespace v2vouch {
 namespace {
@@ -27,7 +27,7 @@ NoticeSubject SourceOf(const CameraDetections& boxes) {
 // What is not known of the ego's own motion `gap_s` after its last sample, for lists that are read
 // from the ego: it may have braked or steered since. Accelerations of 2 m/s^2 either way are one
 // sigma, and so is a change of the yaw rate by 0.1 rad/s in a second.
-StateMatrix EgoDoubt(double gap_s) {
+StateMatrix EgoDriftCovariance(double gap_s) {
   constexpr double kAccelSigma_mps2 = 2.0;
   constexpr double kYawAccelSigma_radps2 = 0.1;
   const double position_m = 0.5 * kAccelSigma_mps2 * gap_s * gap_s;
@@ -68,9 +68,9 @@ struct Perception::State {
         bias(std::move(estimator)) {}
 
   template <class OwnFrame>
-  void OnOwn(const OwnFrame& message, Outputs& outputs);
-  void OnFix(const GnssFix& fix, Outputs& outputs);
-  void OnBsm(const Bsm& bsm, Outputs& outputs);
+  std::optional<Reason> OnOwn(const OwnFrame& message, Outputs& outputs);
+  std::optional<Reason> OnFix(const GnssFix& fix, Outputs& outputs);
+  std::optional<Reason> OnBsm(const Bsm& bsm, Outputs& outputs);
   void Tell(const Bsm& bsm, std::optional<Reason> refusal, Outputs& outputs) const;
   void Settle();
   void Restart();
@@ -97,80 +97,85 @@ Perception::~Perception() = default;
 Perception::Perception(Perception&&) noexcept = default;
 Perception& Perception::operator=(Perception&&) noexcept = default;
 
-void Perception::Step(const Input& input, Outputs& outputs) {
+std::optional<Reason> Perception::Step(const Input& input, Outputs& outputs) {
   outputs.Clear();
   State& state = *state_;
-  std::visit(
+  const auto refusal = std::visit(
       [&](const auto& message) {
         using Message = std::decay_t<decltype(message)>;
         if constexpr (std::is_same_v<Message, Bsm>) {
-          state.OnBsm(message, outputs);
+          return state.OnBsm(message, outputs);
         } else if constexpr (std::is_same_v<Message, GnssFix>) {
-          state.OnFix(message, outputs);
+          return state.OnFix(message, outputs);
         } else {
-          state.OnOwn(message, outputs);
+          return state.OnOwn(message, outputs);
         }
       },
       input);
   state.Settle();
+  return refusal;
 }
 
 template <class OwnMessage>
-void Perception::State::OnOwn(const OwnMessage& message, Outputs& outputs) {
+std::optional<Reason> Perception::State::OnOwn(const OwnMessage& message, Outputs& outputs) {
   const SourceClock::Judgement judgement = clock.Judge(SourceOf(message), message.stamp);
   if (judgement.is_restart) {
     Restart();
     outputs.Refuse(Reason::kClockRestart, message.stamp);
   }
   if (const auto refusal = RefusalOf(judgement.ruling)) {
-    return outputs.Refuse(*refusal, message.stamp);
+    outputs.Refuse(*refusal, message.stamp);
+    return refusal;
   }
   const auto placement = timeline.Insert(message, *clock.agreed(), outputs);
   clock.SetStrict(timeline.is_short_of_work());
   // A frame that LOCAL could not use changes nothing: the list would go out again with its old
   // time, as if it were fresh.
   if (placement.has_frame) Publish(placement.is_correction, outputs);
+  return placement.refusal;
 }
 
-void Perception::State::OnFix(const GnssFix& fix, Outputs& outputs) {
+std::optional<Reason> Perception::State::OnFix(const GnssFix& fix, Outputs& outputs) {
   if (IsTooFarAhead(kGnssSource, fix.stamp)) {
-    return outputs.Refuse(Reason::kFutureStamp, fix.stamp);
+    outputs.Refuse(Reason::kFutureStamp, fix.stamp);
+    return Reason::kFutureStamp;
   }
-  timeline.Insert(fix, clock.agreed().value_or(fix.stamp), outputs);
+  return timeline.Insert(fix, clock.agreed().value_or(fix.stamp), outputs).refusal;
 }
 
-void Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
+std::optional<Reason> Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs) {
   if (IsTooFarAhead(kV2vSource, bsm.stamp)) {
-    return outputs.Refuse(Reason::kFutureStamp, bsm.stamp);
+    outputs.Refuse(Reason::kFutureStamp, bsm.stamp);
+    return Reason::kFutureStamp;
   }
   const EgoPlace place = Place();
   intake.Expire(bsm.stamp);
   const auto claim = intake.Accept(bsm, place);
   if (!claim) {
     Tell(bsm, claim.reason(), outputs);
-    return outputs.Refuse(claim.refusal(), bsm.stamp);
+    outputs.Refuse(claim.refusal(), bsm.stamp);
+    return claim.reason();
   }
   // Far strangers can meet no track: they are listed, and cost nothing more. Whoever was near and
   // suddenly is far must answer for it.
   if (place.is_known && HorizontalDistance(place.p_E, claim->p_E) > config.timeline.interest_m &&
       !timeline.priority().IsFollowed(bsm.sender)) {
-    return Tell(bsm, std::nullopt, outputs);
+    Tell(bsm, std::nullopt, outputs);
+    return std::nullopt;
   }
   Claim followed = *claim;
   if (const SenderTrack* sender = intake.Find(bsm.sender)) {
     followed.first_heard = sender->first_received;
   }
-  timeline.Insert(TimedClaim{followed, bsm.seq, bias->Estimate(bsm.sender, bsm.stamp)},
-                  clock.agreed().value_or(bsm.stamp), outputs);
-  for (const Diagnostic& diagnostic : outputs.diagnostics) {
-    if (diagnostic.reason == Reason::kBsmContradicted && diagnostic.stamp == bsm.stamp) {
-      return Tell(bsm, diagnostic.reason, outputs);
-    }
-  }
-  // Whoever vouches for a vehicle keeps its place in the table, whatever floods it.
+  const auto placement =
+      timeline.Insert(TimedClaim{followed, bsm.seq, bias->Estimate(bsm.sender, bsm.stamp)},
+                      clock.agreed().value_or(bsm.stamp), outputs);
+  Tell(bsm, placement.refusal, outputs);
+  if (placement.refusal) return placement.refusal;
+  // The sender of a validated vehicle keeps its place in the table, whatever floods it.
   const TrustState trust = timeline.priority().TrustOf(bsm.sender);
   intake.Pin(bsm.sender, trust == TrustState::kValidated || trust == TrustState::kBridged);
-  Tell(bsm, std::nullopt, outputs);
+  return std::nullopt;
 }
 
 void Perception::State::Tell(const Bsm& bsm, std::optional<Reason> refusal,
@@ -276,7 +281,7 @@ void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
   };
   const auto doubt = [&](Timestamp t) {
     const Timestamp known = odometry.newest().value_or(frame->stamp);
-    return EgoDoubt(std::max(0.0, ToSeconds(std::min(t, end) - known)));
+    return EgoDriftCovariance(std::max(0.0, ToSeconds(std::min(t, end) - known)));
   };
 
   state.LocalList(*frame, outputs.local);

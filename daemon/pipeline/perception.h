@@ -27,7 +27,9 @@ class Perception {
   Perception& operator=(Perception&&) noexcept;
 
   /// Takes one input in order of arrival. `outputs` is cleared and reused.
-  void Step(const Input& input, Outputs& outputs);
+  /// @return why the input was refused; nullopt: it was taken. A claim that waits for the next
+  /// frame counts as taken; a refusal of it then is among the diagnostics of that step.
+  std::optional<Reason> Step(const Input& input, Outputs& outputs);
 
   /// Copies of the newest lists predicted to `at` (not before the newest frame), marked stale, all
   /// sectors blind; empty once a hidden vehicle would be given up. Changes no state.

@@ -5,11 +5,11 @@
 #include "daemon/base/visit.h"
 #include "daemon/data/vehicle.h"
 #include "daemon/odometry/ego_reading_config.h"
-#include "daemon/pipeline/priority_config.h"
 #include "daemon/pipeline/timeline_config.h"
 #include "daemon/preprocessing/radar/radar_preprocessing.h"
 #include "daemon/tracking/tracker.h"
 #include "daemon/v2v/intake.h"
+#include "daemon/v2v_perception/priority_config.h"
 #include "daemon/visibility/visibility.h"
 
 namespace v2vouch {

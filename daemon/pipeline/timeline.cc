@@ -97,6 +97,7 @@ std::unique_ptr<Timeline::Event> Timeline::NewEvent(TimelineInput input) {
   } else {
     event = std::move(spare_events_.back());
     spare_events_.pop_back();
+    event->refusal.reset();
     event->has_frame = false;
     event->radar.is_ready = false;
     event->emitted.clear();
@@ -182,12 +183,12 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outp
   AdvanceTo(agreed);
   if (const auto reason = WhyNot(input)) {
     outputs.Refuse(*reason, key.time);
-    return {};
+    return {.refusal = reason};
   }
   const bool is_local = IsLocal(input);
   if ((is_local && !IsAffordable(input)) || (key.rank == kClaimRank && IsTooDeep(key))) {
     outputs.Refuse(Reason::kOverBudget, key.time);
-    return {};
+    return {.refusal = Reason::kOverBudget};
   }
   has_local_ = has_local_ || is_local;
 
@@ -210,7 +211,7 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outp
   };
 
   // A claim or a fix cannot change LOCAL, so LOCAL is not even asked.
-  Placement placement{.is_taken = true};
+  Placement placement;
   if (is_local) {
     if (!is_last_of_local) local_ = state_at(restart(place)).local;
     placement.local_frames = RunLocal(is_last_of_local ? place : restart(place), outputs);
@@ -235,6 +236,7 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outp
   placement.v2v_events = RunPriority(from, outputs);
 
   placement.has_frame = events_[place]->has_frame;
+  placement.refusal = events_[place]->refusal;
   placement.is_correction =
       HasFrame(events_[place]->input) &&
       std::any_of(events_.begin() + static_cast<std::ptrdiff_t>(place) + 1, events_.end(),
@@ -258,6 +260,7 @@ int Timeline::RunLocal(std::size_t from, Outputs& outputs) {
     Event& event = *events_[i];
     step_.Clear();
     const auto keep = [&](std::optional<Reason> refusal) {
+      event.refusal = refusal;
       event.has_frame = !refusal;
       if (refusal) return step_.Refuse(*refusal, event.key.time);
       for (const Reason failure : local_.failures()) step_.Refuse(failure, event.key.time);
@@ -286,18 +289,32 @@ int Timeline::RunPriority(std::size_t from, Outputs& outputs) {
     // The pose at an instant uses samples up to that instant only, so asking the newest odometry
     // gives what a run in order would have given.
     const auto ego = local_.odometry().StateAt(event.key.time);
+    const auto refused = [&] {  // By a fix or a claim, which refuse for one reason at most.
+      event.refusal.reset();
+      if (!step_.diagnostics.empty()) event.refusal = step_.diagnostics.front().reason;
+    };
     std::visit(Overloaded{[](const EgoMotion&) {},
                           [&](const GnssFix& fix) {
                             const auto at_fix =
                                 local_.odometry().StateAt(priority_.alignment().FixTime(fix));
-                            if (!at_fix) return step_.Refuse(Reason::kNoEgoMotion, event.key.time);
-                            priority_.OnFix(fix, *at_fix, step_);
+                            if (at_fix) {
+                              priority_.OnFix(fix, *at_fix, step_);
+                            } else {
+                              step_.Refuse(Reason::kNoEgoMotion, event.key.time);
+                            }
+                            refused();
                           },
                           [&](const TimedClaim& timed) {
-                            if (!ego) return step_.Refuse(Reason::kNoEgoMotion, event.key.time);
-                            if (timed.bias) priority_.SetBiasPrior(timed.claim.sender, *timed.bias);
-                            priority_.OnClaim(timed.claim, *ego, step_);
-                            newest_ = std::max(newest_, event.key.time);
+                            if (ego) {
+                              if (timed.bias) {
+                                priority_.SetBiasPrior(timed.claim.sender, *timed.bias);
+                              }
+                              priority_.OnClaim(timed.claim, *ego, step_);
+                              newest_ = std::max(newest_, event.key.time);
+                            } else {
+                              step_.Refuse(Reason::kNoEgoMotion, event.key.time);
+                            }
+                            refused();
                           },
                           [&](const auto&) {
                             if (!event.has_frame) return;

@@ -14,7 +14,7 @@
 #include "daemon/data/claim.h"
 #include "daemon/data/outputs.h"
 #include "daemon/pipeline/local_perception.h"
-#include "daemon/pipeline/priority_perception.h"
+#include "daemon/v2v_perception/v2v_perception.h"
 
 namespace v2vouch {
 
@@ -53,11 +53,11 @@ class Timeline {
   explicit Timeline(const PerceptionConfig& config);
 
   struct Placement {
-    bool is_taken = false;
-    bool has_frame = false;      ///< It was a frame, and LOCAL could use it.
-    bool is_correction = false;  ///< A frame that later frames of LOCAL had to be re-run for.
-    int local_frames = 0;        ///< Frames that LOCAL was stepped through for it, itself included.
-    int v2v_events = 0;  ///< Frames, fixes and claims that the V2V side was stepped through.
+    std::optional<Reason> refusal;  ///< Why it was not taken, or is of no use; nullopt: it is.
+    bool has_frame = false;         ///< It was a frame, and LOCAL could use it.
+    bool is_correction = false;     ///< A frame that later frames of LOCAL had to be re-run for.
+    int local_frames = 0;  ///< Frames that LOCAL was stepped through for it, itself included.
+    int v2v_events = 0;    ///< Frames, fixes and claims that the V2V side was stepped through.
   };
 
   /// Refusals and reports go to `outputs` once per event, however often it is re-run. What is taken
@@ -73,7 +73,7 @@ class Timeline {
   }
 
   [[nodiscard]] const LocalPerception& local() const { return local_; }
-  [[nodiscard]] const PriorityPerception& priority() const { return priority_; }
+  [[nodiscard]] const V2vPerception& priority() const { return priority_; }
   /// The newest frame in order of time; nullptr before the first.
   [[nodiscard]] const LocalFrame* newest_frame() const;
   /// Newest time of any frame or claim.
@@ -93,11 +93,12 @@ class Timeline {
  private:
   struct Checkpoint {
     LocalPerception local;
-    PriorityPerception priority;
+    V2vPerception priority;
   };
   struct Event {
     EventKey key;
     TimelineInput input;
+    std::optional<Reason> refusal;  // Why it was of no use in the latest run.
     bool has_frame = false;
     LocalFrame frame;
     RadarPreparation radar;
@@ -131,7 +132,7 @@ class Timeline {
 
   PerceptionConfig config_;
   LocalPerception local_;
-  PriorityPerception priority_;
+  V2vPerception priority_;
   std::deque<std::unique_ptr<Event>> events_;  // Ordered by key.
   std::size_t settled_events_ = 0;             // The first of them; kept for the next checkpoint.
   std::unique_ptr<Checkpoint> before_;         // The state before the first event.

@@ -16,7 +16,7 @@ namespace v2vouch {
 /// is left of its bridge. It belongs to the physical vehicle; the sender is whoever speaks for it
 /// now. Copyable, fixed size.
 struct PriorityVehicle {
-  std::uint64_t id = 0;        ///< Of PRIORITY; see PriorityId().
+  std::uint64_t id = 0;        ///< Of PRIORITY; see PriorityId(). 0: it has ended.
   std::uint64_t local_id = 0;  ///< The LOCAL track it rests on; 0 = none.
   SenderId sender = 0;
   std::optional<SenderId> predecessor{};  ///< Identity it spoke under before ...
@@ -53,6 +53,8 @@ struct PriorityVehicle {
   std::optional<Timestamp> last_camera{};
   int radar_hits = 0;
   int camera_hits = 0;
+
+  [[nodiscard]] bool has_ended() const { return id == 0; }
 
   /// Carries filter and coast to `stamp`; nothing where it lies behind them.
   void PredictTo(Timestamp stamp, const PriorityFilterConfig& config);

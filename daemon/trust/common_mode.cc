@@ -33,4 +33,15 @@ bool CommonMode::HasWitnessAgainst(SenderId sender) const {
   return witnesses_ > 1 || (witnesses_ == 1 && only_witness_ != sender);
 }
 
+void CommonModeMonitor::Judge(std::span<const SenderResidual> residuals, Timestamp now,
+                              const CommonModeConfig& config) {
+  const CommonMode seen(residuals, config);
+  if (seen.is_shifted()) {
+    shifted_ = now;
+    mode_ = seen;
+  } else if (!IsShifted(now, config)) {
+    mode_ = seen;
+  }
+}
+
 }  // namespace v2vouch

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 
+#include "daemon/base/time.h"
 #include "daemon/base/visit.h"
 #include "daemon/data/input.h"
 
@@ -53,6 +55,23 @@ class CommonMode {
   Eigen::Vector2d shift_ = Eigen::Vector2d::Zero();
   int witnesses_ = 0;
   SenderId only_witness_ = 0;
+};
+
+/// The common mode over time: once seen, a shift of all senders is held for
+/// CommonModeConfig::hold_s.
+class CommonModeMonitor {
+ public:
+  /// @param residuals of all senders whose residuals have settled, at `now`.
+  void Judge(std::span<const SenderResidual> residuals, Timestamp now,
+             const CommonModeConfig& config);
+  [[nodiscard]] bool IsShifted(Timestamp now, const CommonModeConfig& config) const {
+    return shifted_ && ToSeconds(now - *shifted_) <= config.hold_s;
+  }
+  [[nodiscard]] const CommonMode& mode() const { return mode_; }
+
+ private:
+  CommonMode mode_;
+  std::optional<Timestamp> shifted_;  // When all senders were last off alike.
 };
 
 }  // namespace v2vouch

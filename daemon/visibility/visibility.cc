@@ -404,4 +404,14 @@ SensorView VisibilityMap::See(const Sensor& sensor, const Box& footprint) const 
   return result;
 }
 
+Occluder FootprintOf(const LocalTrack& track) {
+  const auto& P = track.state_O.covariance;
+  return {.id = track.id,
+          .centre_O = track.state_O.mean.head<2>(),
+          .yaw_rad = track.state_O.mean[kYaw],
+          .length_m = track.extent.length_m,
+          .width_m = track.extent.width_m,
+          .position_sigma_m = std::sqrt(std::max(0.0, 0.5 * (P(kX, kX) + P(kY, kY))))};
+}
+
 }  // namespace v2vouch

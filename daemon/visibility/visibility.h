@@ -180,4 +180,7 @@ class VisibilityMap {
   std::vector<Box> occluders_;
 };
 
+/// The footprint of a track as the map wants it.
+Occluder FootprintOf(const LocalTrack& track);
+
 }  // namespace v2vouch

@@ -92,7 +92,7 @@ TEST(LateData, AFrameCostsItselfAndTheFramesAfterIt) {
       const auto later = static_cast<int>(
           std::count_if(frames.begin(), frames.end(), [&](const EventKey& k) { return k > key; }));
       const Timeline::Placement placement = timeline.Insert(*event, newest.Hear(key.time), outputs);
-      ASSERT_TRUE(placement.is_taken);
+      ASSERT_FALSE(placement.refusal);
       if (IsFrame(input)) {
         ASSERT_EQ(placement.local_frames, later + 1) << delay_s;
         ASSERT_EQ(placement.is_correction, later > 0);
@@ -158,7 +158,7 @@ TEST(LateData, LateClaimsAreRunTogetherWithTheNextFrame) {
         const auto placement =
             timeline.Insert(TimedClaim{claim, tried, std::nullopt}, newest.Hear(next), outputs);
         steps += placement.v2v_events;
-        if (placement.is_taken) ++claims;
+        if (!placement.refusal) ++claims;
         ++tried;
       }
       const auto event = ForTimeline(input);
@@ -192,11 +192,11 @@ TEST(LateData, AClaimFarBackAmongManyIsRefusedAndCounted) {
   }
   outputs.Clear();
   claim.received = next - FromSeconds(0.3);
-  EXPECT_FALSE(timeline.Insert(TimedClaim{claim, 1, std::nullopt}, next, outputs).is_taken);
+  EXPECT_TRUE(timeline.Insert(TimedClaim{claim, 1, std::nullopt}, next, outputs).refusal);
   ASSERT_EQ(outputs.diagnostics.size(), 1u);
   EXPECT_EQ(outputs.diagnostics[0].reason, Reason::kOverBudget);
   claim.received = next - FromSeconds(0.03);
-  EXPECT_TRUE(timeline.Insert(TimedClaim{claim, 2, std::nullopt}, next, outputs).is_taken);
+  EXPECT_FALSE(timeline.Insert(TimedClaim{claim, 2, std::nullopt}, next, outputs).refusal);
 }
 
 // An ego sample in order, or late but newer than every frame, costs no frame at all.
