@@ -79,10 +79,8 @@ struct MisbehaviorReport {
   Timestamp stamp{};
   SenderId sender = 0;
   CertificateDigest certificate{};
-  std::string_view check;  ///< Points at a literal.
+  Check check{};
   Verdict verdict = Verdict::kWithdraw;
-  std::int8_t etsi_class = -1;  ///< Of the observation in ETSI TS 103 759; -1 = none.
-  bool is_j3287 = false;        ///< SAE J3287 lists the observation as reportable.
   std::vector<Evidence> evidence;
 };
 

@@ -32,7 +32,7 @@ double Excess(const Eigen::Vector2d& residual_O, const CoObservation& now, doubl
   return std::hypot(along_m / (across_limit_m + slack.along_m), across_m / across_limit_m);
 }
 
-std::optional<Finding> JudgeResidual(std::string_view check, const Eigen::Vector2d& residual_O,
+std::optional<Finding> JudgeResidual(Check check, const Eigen::Vector2d& residual_O,
                                      const CoObservation& now, double withdraw_m, double accuse_m,
                                      const Slack& slack) {
   if (Excess(residual_O, now, accuse_m, slack) > 1.0) {
@@ -153,7 +153,7 @@ std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObserv
   Eigen::Vector2d own_O = history.mean_O();
   if (now.is_ego_shifted && (own_O - now.shift_O).norm() < own_O.norm()) own_O -= now.shift_O;
   return JudgeResidual(
-      "residual_level", own_O, now, config.level_withdraw_m, config.level_accuse_m,
+      Check::kResidualLevel, own_O, now, config.level_withdraw_m, config.level_accuse_m,
       {now.alignment_sigma_m + 2.0 * history.sensed_sigma_m(),
        config.stale_position_s * std::abs(now.track_speed_mps) + 2.0 * history.extent_sigma_m()});
 }
@@ -164,7 +164,7 @@ std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObserv
   if (!reference_O || now.is_ego_shifted) return std::nullopt;
   const double changed_mps = std::abs(now.track_speed_mps - history.reference_speed_mps());
   return JudgeResidual(
-      "residual_drift", history.mean_O() - *reference_O, now, config.drift_withdraw_m,
+      Check::kResidualDrift, history.mean_O() - *reference_O, now, config.drift_withdraw_m,
       config.drift_accuse_m,
       {kAlignmentDrift * now.alignment_sigma_m + 2.0 * history.sensed_sigma_m(),
        config.stale_position_s * changed_mps + kJitter_s * std::abs(now.track_speed_mps) +
@@ -197,12 +197,12 @@ std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObs
     return std::nullopt;
   }
   if (exceeds(config.speed_accuse_mps)) {
-    return Finding{"velocity_residual", Verdict::kAccuse, "velocity_residual_mps", residual_mps,
-                   config.speed_accuse_mps};
+    return Finding{Check::kVelocityResidual, Verdict::kAccuse, "velocity_residual_mps",
+                   residual_mps, config.speed_accuse_mps};
   }
   if (exceeds(config.speed_withdraw_mps)) {
-    return Finding{"velocity_residual", Verdict::kWithdraw, "velocity_residual_mps", residual_mps,
-                   config.speed_withdraw_mps};
+    return Finding{Check::kVelocityResidual, Verdict::kWithdraw, "velocity_residual_mps",
+                   residual_mps, config.speed_withdraw_mps};
   }
   if (!history.has_yaw() || std::abs(now.track_speed_mps) < config.heading_min_speed_mps) {
     return std::nullopt;
@@ -210,11 +210,11 @@ std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObs
   const double yaw_rad = std::abs(history.yaw_rad());
   const double slack_rad = 2.0 * history.yaw_sigma_rad();
   if (yaw_rad > config.heading_accuse_rad + slack_rad) {
-    return Finding{"heading_residual", Verdict::kAccuse, "heading_residual_rad", yaw_rad,
+    return Finding{Check::kHeadingResidual, Verdict::kAccuse, "heading_residual_rad", yaw_rad,
                    config.heading_accuse_rad + slack_rad};
   }
   if (yaw_rad > config.heading_withdraw_rad + slack_rad) {
-    return Finding{"heading_residual", Verdict::kWithdraw, "heading_residual_rad", yaw_rad,
+    return Finding{Check::kHeadingResidual, Verdict::kWithdraw, "heading_residual_rad", yaw_rad,
                    config.heading_withdraw_rad + slack_rad};
   }
   return std::nullopt;
@@ -225,7 +225,7 @@ std::optional<Finding> CheckAcceleration(const ResidualHistory& history, const C
   if (history.time_s() < 3.0 * config.mean_time_s) return std::nullopt;
   const double limit_mps2 = config.accel_withdraw_mps2 + 2.0 * history.accel_sigma_mps2();
   if (std::abs(history.accel_mps2()) <= limit_mps2) return std::nullopt;
-  return Finding{"acceleration_residual", Verdict::kWithdraw, "acceleration_residual_mps2",
+  return Finding{Check::kAccelerationResidual, Verdict::kWithdraw, "acceleration_residual_mps2",
                  history.accel_mps2(), limit_mps2};
 }
 

@@ -110,27 +110,27 @@ class ResidualHistory {
 /// sensors doubt of themselves does not count.
 bool IsFarApart(const CoObservation& now, const TrustConfig& config);
 
-/// C8: level of the mean raw residual, along and across the vehicle's direction.
+/// residual_level: level of the mean raw residual, along and across the vehicle's direction.
 std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config);
-/// C9: its drift against ten seconds ago. A position older than its stamp shifts along the track by
-/// what the speed has changed since, and by little otherwise.
+/// residual_drift: its drift against ten seconds ago. A position older than its stamp shifts along
+/// the track by what the speed has changed since, and by little otherwise.
 std::optional<Finding> CheckDrift(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config);
-/// C10: claimed against sensed velocity (along and across the vehicle's direction) and direction;
-/// limits grow by twice the sensors' own sigma, across also by an honest heading error of 2
-/// degrees. A false velocity beside true places is the message stream's to find; what counts here
-/// is a sender that leaves its vehicle, so the residual of the position must move with that of the
-/// velocity, by half of it at least, and have come leaving_m from its reference. Where it does not,
-/// the sensors have the velocity wrong.
+/// velocity_residual: claimed against sensed velocity (along and across the vehicle's direction)
+/// and direction; limits grow by twice the sensors' own sigma, across also by an honest heading
+/// error of 2 degrees. A false velocity beside true places is the message stream's to find; what
+/// counts here is a sender that leaves its vehicle, so the residual of the position must move with
+/// that of the velocity, by half of it at least, and have come leaving_m from its reference. Where
+/// it does not, the sensors have the velocity wrong.
 std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObservation& now,
                                      const TrustConfig& config);
-/// C15: claimed against sensed acceleration over three mean times. Sensors follow hard braking
-/// late, so a shorter disagreement says nothing.
+/// acceleration_residual: claimed against sensed acceleration over three mean times. Sensors follow
+/// hard braking late, so a shorter disagreement says nothing.
 std::optional<Finding> CheckAcceleration(const ResidualHistory& history, const CoObservation& now,
                                          const TrustConfig& config);
-/// C13: whether claimed and sensed size can be of one vehicle. Twice the sensors' own sigma is
-/// allowed beside the mismatch; a size that is not claimed fits.
+/// plausible size: whether claimed and sensed size can be of one vehicle. Twice the sensors' own
+/// sigma is allowed beside the mismatch; a size that is not claimed fits.
 bool IsSizePlausible(const std::optional<double>& length_m, const std::optional<double>& width_m,
                      const Extent& sensed, const TrustConfig& config);
 

@@ -78,14 +78,16 @@ double ClaimedPlace::log_ratio() const {
 std::optional<Finding> ClaimedPlace::Judge(double hold_s, const ClaimedPlaceConfig& config) const {
   const double ratio = log_ratio();
   if (accusable_since_ && ToSeconds(*last_look_ - *accusable_since_) >= hold_s) {
-    return Finding{"empty_place", Verdict::kAccuse, "log_ratio", ratio, config.accuse_log_ratio};
+    return Finding{Check::kEmptyPlace, Verdict::kAccuse, "log_ratio", ratio,
+                   config.accuse_log_ratio};
   }
   if (ratio <= config.withdraw_log_ratio) {
-    return Finding{"empty_place", Verdict::kWithdraw, "log_ratio", ratio,
+    return Finding{Check::kEmptyPlace, Verdict::kWithdraw, "log_ratio", ratio,
                    config.withdraw_log_ratio};
   }
   if (doubted_since_ && ToSeconds(*last_look_ - *doubted_since_) >= config.lasting_s) {
-    return Finding{"empty_place", Verdict::kWithdraw, "log_ratio", ratio, config.lasting_log_ratio};
+    return Finding{Check::kEmptyPlace, Verdict::kWithdraw, "log_ratio", ratio,
+                   config.lasting_log_ratio};
   }
   return std::nullopt;
 }

@@ -13,7 +13,7 @@
 
 namespace v2vouch {
 
-/// C11 for senders that no sensor vouches for: is there anything where they say they are?
+/// empty_place for senders that no sensor vouches for: is there anything where they say they are?
 struct ClaimedPlaceConfig {
   double look_s = 0.3;               ///< At most one look per this time; looks are not independent.
   double bias_sigma_m = 1.5;         ///< GNSS bias that an honest sender may have, per axis.

@@ -11,7 +11,7 @@
 
 namespace v2vouch {
 
-/// C17: whose fault a residual is, the sender's or our own.
+/// Common mode: whose fault a residual is, the sender's or our own.
 struct CommonModeConfig {
   int senders = 3;         ///< So many that are off in the same way blame the ego or the area.
   double shift_m = 2.5;    ///< Off: the mean of their residuals is longer than this ...

@@ -8,8 +8,7 @@
 
 namespace v2vouch {
 
-/// A verdict as the report that leaves the car: with the classes of ETSI TS 103 759 and SAE J3287,
-/// and the figure that broke its limit as evidence.
+/// A verdict as the report that leaves the car, with the figure that broke its limit as evidence.
 MisbehaviorReport ReportOf(const SenderTrust::Judgement& judgement, SenderId sender,
                            const CertificateDigest& certificate, Timestamp stamp);
 

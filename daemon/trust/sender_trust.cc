@@ -54,7 +54,7 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
   history_.Add(observation, config);
   if (history_.is_torn() && !observation.is_own_motion_whole && is_relied_on()) {
     Suspect(observation.stamp,
-            {"residual_jump", Verdict::kWithdraw, "jump_m", history_.torn_m(), config.torn_m});
+            {Check::kResidualJump, Verdict::kWithdraw, "jump_m", history_.torn_m(), config.torn_m});
     return true;
   }
   if (history_.is_torn() && observation.is_own_motion_whole) {

@@ -20,7 +20,7 @@ void SharedPlace::OnLook(Timestamp stamp, bool is_shared) {
 
 std::optional<Finding> SharedPlace::Judge(const SharedPlaceConfig& config) const {
   if (shared_s_ < config.withdraw_s) return std::nullopt;
-  return Finding{"shared_place", Verdict::kWithdraw, "shared_s", shared_s_, config.withdraw_s};
+  return Finding{Check::kSharedPlace, Verdict::kWithdraw, "shared_s", shared_s_, config.withdraw_s};
 }
 
 }  // namespace v2vouch

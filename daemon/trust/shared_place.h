@@ -9,7 +9,7 @@
 
 namespace v2vouch {
 
-/// C12: several identities that claim one vehicle.
+/// shared_place: several identities that claim one vehicle.
 struct SharedPlaceConfig {
   double near_m = 1.2;      ///< Two claims so near each other are one place: no two cars can be ...
   double same_mps = 1.5;    ///< ... and this close in velocity.

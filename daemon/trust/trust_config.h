@@ -22,20 +22,25 @@ struct TrustConfig {
   double again_observed_s = 0.6;  ///< ... over so long suffice.
   double again_s = 10.0;
   double mean_time_s = 1.0;       ///< Residuals are averaged over this time.
-  double level_withdraw_m = 5.0;  ///< C8: level of the raw residual.
+  double level_withdraw_m = 5.0;  ///< residual_level: level of the raw residual.
   double level_accuse_m = 12.0;
-  double drift_withdraw_m = 3.0;  ///< C9: its change over 10 s, or since validation.
+  double drift_withdraw_m = 3.0;  ///< residual_drift: its change over 10 s, or since validation.
   double drift_accuse_m = 10.0;
-  double stale_position_s = 0.15;   ///< C8, C9: along-track limits grow by this times speed.
-  double speed_withdraw_mps = 1.0;  ///< C10: claimed against sensed velocity.
+  /// residual_level, residual_drift: along-track limits grow by this times speed.
+  double stale_position_s = 0.15;
+  double speed_withdraw_mps = 1.0;  ///< velocity_residual: claimed against sensed velocity.
   double speed_accuse_mps = 2.0;
-  double torn_m = 2.5;     ///< A residual that jumps by so much was torn by one of the two sides.
-  double leaving_m = 1.5;  ///< C10: only once the position has come so far from where it was.
-  double heading_withdraw_rad = FromDegrees(15.0);  ///< C10, above heading_min_speed_mps.
+  double torn_m = 2.5;  ///< A residual that jumps by so much was torn by one of the two sides.
+  /// velocity_residual: only once the position has come so far from where it was.
+  double leaving_m = 1.5;
+  /// heading_residual, above heading_min_speed_mps.
+  double heading_withdraw_rad = FromDegrees(15.0);
   double heading_accuse_rad = FromDegrees(30.0);
   double heading_min_speed_mps = 3.0;
-  double accel_withdraw_mps2 = 3.0;  ///< C15: claimed against sensed acceleration, mean of 3 s.
-  double size_mismatch = 0.6;        ///< C13: claimed size off by this share of the sensed one.
+  /// acceleration_residual: claimed against sensed acceleration, mean of 3 s.
+  double accel_withdraw_mps2 = 3.0;
+  /// plausible size: claimed size off by this share of the sensed one.
+  double size_mismatch = 0.6;
   double odd_claim_m = 6.0;  ///< A claim so far from its sender's others may be somebody else's ...
   int odd_claims = 5;        ///< ... but not so many in a row.
   double accuse_hold_s = 5.0;  ///< An accusing level must last this long.

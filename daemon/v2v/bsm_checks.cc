@@ -11,7 +11,7 @@
 namespace v2vouch {
 namespace {
 
-// What no road vehicle does (plausibility limits of the misbehaviour catalogue, C14).
+// What no road vehicle does (check implausible).
 constexpr double kMaxSpeed_mps = 70.0;
 constexpr double kMaxAccel_mps2 = 12.0;
 constexpr double kMaxLateralAccel_mps2 = 9.0;

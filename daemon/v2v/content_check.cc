@@ -20,7 +20,7 @@ std::optional<Finding> Change(std::optional<double>& known_m, std::optional<doub
   const double change_m = std::abs(*told_m - *before_m);
   const double limit_m = std::min(config.size_change_m, config.size_change_share * *before_m);
   if (change_m <= limit_m) return std::nullopt;
-  return Finding{"size_change", Verdict::kWithdraw, "change_m", change_m, limit_m};
+  return Finding{Check::kSizeChange, Verdict::kWithdraw, "change_m", change_m, limit_m};
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ std::optional<Finding> DelayCheck::Judge(double age_s, const MessageCheckConfig&
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double median_s = 0.5 * (*middle + *std::max_element(sorted.begin(), middle));
   if (median_s <= config.late_s) return std::nullopt;
-  return Finding{"late_messages", Verdict::kWithdraw, "median_age_s", median_s, config.late_s};
+  return Finding{Check::kLateMessages, Verdict::kWithdraw, "median_age_s", median_s, config.late_s};
 }
 
 std::optional<Finding> SizeCheck::Judge(std::optional<double> length_m,
@@ -53,8 +53,8 @@ void ImplausibleCheck::OnMessage(bool is_implausible) {
 std::optional<Finding> ImplausibleCheck::Judge(const MessageCheckConfig& config) const {
   const int refused = std::popcount(refused_);
   if (refused < config.implausible_messages) return std::nullopt;
-  return Finding{"implausible", Verdict::kWithdraw, "refused_of_ten", static_cast<double>(refused),
-                 static_cast<double>(config.implausible_messages)};
+  return Finding{Check::kImplausible, Verdict::kWithdraw, "refused_of_ten",
+                 static_cast<double>(refused), static_cast<double>(config.implausible_messages)};
 }
 
 }  // namespace v2vouch

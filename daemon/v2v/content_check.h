@@ -10,8 +10,8 @@
 
 namespace v2vouch {
 
-/// C2: `late_messages`, WITHDRAW, where the median age of the last ten messages exceeds late_s.
-/// (A message older than the intake's max_age_s is refused at once.)
+/// `late_messages`, WITHDRAW, where the median age of the last ten messages exceeds
+/// late_s. (A message older than the intake's max_age_s is refused at once.)
 class DelayCheck {
  public:
   std::optional<Finding> Judge(double age_s, const MessageCheckConfig& config);
@@ -22,9 +22,9 @@ class DelayCheck {
   std::size_t count_ = 0;
 };
 
-/// C13: `size_change`, WITHDRAW, on the message in which length or width differs from the last told
-/// by more than size_change_m, or by more than size_change_share of it. The new size is the
-/// reference from then on, so that one correction is told once.
+/// `size_change`, WITHDRAW, on the message in which length or width differs from the
+/// last told by more than size_change_m, or by more than size_change_share of it. The new size is
+/// the reference from then on, so that one correction is told once.
 class SizeCheck {
  public:
   std::optional<Finding> Judge(std::optional<double> length_m, std::optional<double> width_m,
@@ -35,8 +35,8 @@ class SizeCheck {
   std::optional<double> width_m_;
 };
 
-/// C14: `implausible`, WITHDRAW, where so many of the last ten messages were refused for a speed or
-/// an acceleration that cannot be.
+/// `implausible`, WITHDRAW, where so many of the last ten messages were refused for a
+/// speed or an acceleration that cannot be.
 class ImplausibleCheck {
  public:
   void OnMessage(bool is_implausible);

@@ -8,24 +8,28 @@ namespace v2vouch {
 
 /// Limits of the checks that need nothing but a sender's own messages.
 struct MessageCheckConfig {
-  double late_s = 0.8;             ///< C2: median age of ten messages.
-  double over_rate_s = 2.0;        ///< C4: over the sender's budget for so long.
-  double accuse_rate_hz = 40.0;    ///< C4: more than this for a whole second is no accident.
-  double own_motion_nis = 12.0;    ///< C5: mean NIS of ten messages (4 where consistent).
-  double jump_m = 8.0;             ///< C5: displacement that the claimed motion does not explain.
-  double jump_speed_mps = 70.0;    ///< C5: and never more than this times the time between.
-  int accuse_jumps = 3;            ///< C5: of five messages.
-  double path_speed_mps = 0.8;     ///< C6: claimed speed against the way made good: this ...
+  double late_s = 0.8;       ///< late_messages: median age of ten messages.
+  double over_rate_s = 2.0;  ///< message_rate: over the sender's budget for so long.
+  /// message_rate: more than this for a whole second is no accident.
+  double accuse_rate_hz = 40.0;
+  double own_motion_nis = 12.0;  ///< own_motion: mean NIS of ten messages (4 where consistent).
+  double jump_m = 8.0;  ///< position_jump: displacement that the claimed motion does not explain.
+  /// position_jump: and never more than this times the time between.
+  double jump_speed_mps = 70.0;
+  int accuse_jumps = 3;  ///< position_jump: of five messages.
+  /// speed_against_path: claimed speed against the way made good: this ...
+  double path_speed_mps = 0.8;
   double path_speed_share = 0.02;  ///< ... plus this share of the speed.
-  double path_course_rad = FromDegrees(20.0);  ///< C6: claimed course against the way made good.
-  double path_min_speed_mps = 3.0;             ///< C6: slower, courses are not judged.
-  double path_min_m = 10.0;                    ///< C6: shorter ways are not judged.
-  double path_noise_sigmas = 3.0;              ///< C6: by how much noise may exceed the limits.
-  double accuse_hold_s = 5.0;                  ///< C6: twice a limit for so long accuses.
-  double max_accel_mps2 = 12.0;                ///< C6: change of claimed speed.
-  double size_change_m = 0.3;                  ///< C13: within one identity ...
-  double size_change_share = 0.1;  ///< ... or this share of the size, whichever is less.
-  int implausible_messages = 3;    ///< C14: refused as impossible, of ten.
+  /// course_against_path: claimed course against the way made good.
+  double path_course_rad = FromDegrees(20.0);
+  double path_min_speed_mps = 3.0;  ///< course_against_path: slower, courses are not judged.
+  double path_min_m = 10.0;         ///< both: shorter ways are not judged.
+  double path_noise_sigmas = 3.0;   ///< both: by how much noise may exceed the limits.
+  double accuse_hold_s = 5.0;       ///< both: twice a limit for so long accuses.
+  double max_accel_mps2 = 12.0;     ///< implausible_motion: change of claimed speed.
+  double size_change_m = 0.3;       ///< size_change: within one identity ...
+  double size_change_share = 0.1;   ///< ... or this share of the size, whichever is less.
+  int implausible_messages = 3;     ///< implausible: refused as impossible, of ten.
 
   template <class Archive>
   void Visit(Archive& a) {

@@ -43,7 +43,7 @@ std::optional<Finding> InnovationCheck::Judge(std::optional<double> nis, int fre
   for (const float one : nis_) sum += one;
   const double mean = sum / static_cast<double>(nis_.size());
   if (mean <= config.own_motion_nis) return std::nullopt;
-  return Finding{"own_motion", Verdict::kWithdraw, "mean_nis", mean, config.own_motion_nis};
+  return Finding{Check::kOwnMotion, Verdict::kWithdraw, "mean_nis", mean, config.own_motion_nis};
 }
 
 std::optional<Finding> JumpCheck::Judge(const PlaceAndVelocity& here,
@@ -69,12 +69,12 @@ std::optional<Finding> JumpCheck::Judge(const PlaceAndVelocity& here,
   before_jump_ = *last_;
   last_ = now;
   if (is_back) {
-    return Finding{"two_places", Verdict::kWithdraw, "displacement_m", distance_m, limit_m};
+    return Finding{Check::kTwoPlaces, Verdict::kWithdraw, "displacement_m", distance_m, limit_m};
   }
   if (distance_m > kAccusingJump * limit_m) jumps_ |= 1U;
   const bool accuses = std::popcount(jumps_) >= config.accuse_jumps;
-  return Finding{"position_jump", accuses ? Verdict::kAccuse : Verdict::kWithdraw, "displacement_m",
-                 distance_m, limit_m};
+  return Finding{Check::kPositionJump, accuses ? Verdict::kAccuse : Verdict::kWithdraw,
+                 "displacement_m", distance_m, limit_m};
 }
 
 std::optional<Finding> SpeedStepCheck::Judge(double time_s, double speed_mps,
@@ -92,7 +92,7 @@ std::optional<Finding> SpeedStepCheck::Judge(double time_s, double speed_mps,
     const double second = now.speed_mps - before.speed_mps;
     if (differ(before, last_[0]) && differ(before, now) && first * second > 0.0 &&
         !differ(last_[2], before)) {
-      finding = Finding{"implausible_motion", Verdict::kWithdraw, "acceleration_mps2",
+      finding = Finding{Check::kImplausibleMotion, Verdict::kWithdraw, "acceleration_mps2",
                         first / (last_[0].time_s - before.time_s), config.max_accel_mps2};
     }
   }

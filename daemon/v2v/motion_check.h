@@ -11,7 +11,7 @@
 
 namespace v2vouch {
 
-/// C5: mean normalised innovation of the last ten messages against the sender's own motion.
+/// own_motion: mean normalised innovation of the last ten messages against the sender's own motion.
 ///
 ///     own_motion, WITHDRAW: mean over ten of min(NIS 4 / dof / (1 + (dt / 0.25 s)^2), 40)
 ///                           > own_motion_nis
@@ -38,7 +38,7 @@ struct PlaceAndVelocity {
   Eigen::Vector2d v_mps = Eigen::Vector2d::Zero();
 };
 
-/// C5: displacements that no motion explains.
+/// position_jump: displacements that no motion explains.
 ///
 ///     unexplained = |p - (p_last + (v_last + v) / 2 dt)|
 ///     limit       = min(max(jump_m, jump_speed dt), jump_m + max_accel / 2 dt^2)
@@ -56,7 +56,7 @@ class JumpCheck {
   std::uint32_t jumps_ = 0;  // One bit per message, the newest lowest.
 };
 
-/// C6: claimed speed that changes faster than any vehicle's.
+/// implausible_motion: claimed speed that changes faster than any vehicle's.
 ///
 ///     implausible_motion, WITHDRAW: two messages in a row differ from the two before them, in the
 ///     same direction, by more than max_accel dt + 2 m/s (noise and rounding)

@@ -203,13 +203,14 @@ std::optional<Finding> PathCheck::Judge(const PathStep& step, const MessageCheck
   const bool accuses_course = course_held_s_ >= config.accuse_hold_s;
   const auto of_speed = [&] {
     const double times = accuses_speed ? kAccusation : 1.0;
-    return Finding{"speed_against_path", accuses_speed ? Verdict::kAccuse : Verdict::kWithdraw,
+    return Finding{Check::kSpeedAgainstPath, accuses_speed ? Verdict::kAccuse : Verdict::kWithdraw,
                    "speed_error_mps", speed.speed_error_mps, times * speed.speed_limit_mps};
   };
   const auto of_course = [&] {
     const double times = accuses_course ? kAccusation : 1.0;
-    return Finding{"course_against_path", accuses_course ? Verdict::kAccuse : Verdict::kWithdraw,
-                   "course_error_rad", course.course_error_rad, times * course.course_limit_rad};
+    return Finding{Check::kCourseAgainstPath,
+                   accuses_course ? Verdict::kAccuse : Verdict::kWithdraw, "course_error_rad",
+                   course.course_error_rad, times * course.course_limit_rad};
   };
   if (std::max(speed.speed, course.course) <= 1.0) return std::nullopt;
   const bool is_course =

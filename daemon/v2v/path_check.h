@@ -24,7 +24,8 @@ struct PathStep {
 Eigen::Vector2d ClaimedWay(double yaw_from_rad, double speed_from_mps, double yaw_to_rad,
                            double speed_to_mps, double dt_s);
 
-/// C6: claimed speed and course against the sender's own displacement.
+/// speed_against_path and course_against_path: claimed speed and course against the sender's own
+/// displacement.
 ///
 /// What the places have moved beyond the claimed way, r(t), is regressed on time over windows of
 /// 1 to 5 s in which either way is 10 m long:

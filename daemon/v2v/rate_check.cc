@@ -42,12 +42,14 @@ std::optional<Finding> RateCheck::Judge(Timestamp now, const MessageCheckConfig&
                  : (passed == 1 ? std::min(heard_[0], heard_[1]) : std::min(heard_[1], heard_[2])) /
                        kSlot_s;
   if (least_hz > config.accuse_rate_hz) {
-    return Finding{"message_rate", Verdict::kAccuse, "rate_hz", least_hz, config.accuse_rate_hz};
+    return Finding{Check::kMessageRate, Verdict::kAccuse, "rate_hz", least_hz,
+                   config.accuse_rate_hz};
   }
   if (refused_ > 0 && ToSeconds(now - last_refused_) <= kPause_s) {
     const double over_s = ToSeconds(now - over_since_);
     if (over_s >= config.over_rate_s) {
-      return Finding{"message_rate", Verdict::kWithdraw, "over_rate_s", over_s, config.over_rate_s};
+      return Finding{Check::kMessageRate, Verdict::kWithdraw, "over_rate_s", over_s,
+                     config.over_rate_s};
     }
   }
   return std::nullopt;

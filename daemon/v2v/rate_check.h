@@ -11,7 +11,8 @@
 
 namespace v2vouch {
 
-/// C4: a sender that speaks too often. Told of every message that is no repeat of another.
+/// message_rate: a sender that speaks too often. Told of every message that is no repeat of
+/// another.
 ///
 ///     message_rate, WITHDRAW: refused for its budget again and again for over_rate_s
 ///     message_rate, ACCUSE:   more than accuse_rate_hz in each half of the last whole second

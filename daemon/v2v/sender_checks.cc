@@ -24,7 +24,7 @@ std::optional<Finding> SenderChecks::Judge(const Claim& claim, const SenderTrack
   };
   if (contested_) {
     if (ToSeconds(claim.received - *contested_) <= kContested_s) {
-      add(Finding{"contested_core", Verdict::kWithdraw, "identities", 2.0, 1.0});
+      add(Finding{Check::kContestedCore, Verdict::kWithdraw, "identities", 2.0, 1.0});
     }
     contested_.reset();
   }

@@ -26,7 +26,8 @@ class SenderChecks {
   void OnOverRate(Timestamp stamp) { rate_.OnRefused(stamp); }
   /// Refused for what it claims.
   void OnImplausible() { implausible_.OnMessage(true); }
-  /// The same core was heard under another id (C3). Who copied whom is not known: relays exist.
+  /// The same core was heard under another id (contested_core). Who copied whom is not known:
+  /// relays exist.
   void OnContested(Timestamp stamp) { contested_ = stamp; }
   /// What its heading means has turned out to be the other way (DirectionReading): ways and speeds
   /// of before were misread.
@@ -40,7 +41,7 @@ class SenderChecks {
   /// @return the gravest finding; of equals the first of: contested_core, message_rate,
   ///   implausible, position_jump or two_places, implausible_motion, speed_against_path or
   ///   course_against_path, own_motion, size_change, late_messages. Places and ways of a sender
-  ///   whose accuracy is poor are not judged (C16).
+  ///   whose accuracy is poor are not judged.
   std::optional<Finding> Judge(const Claim& claim, const SenderTrack& track,
                                const MessageCheckConfig& config);
 

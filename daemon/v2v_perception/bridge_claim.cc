@@ -33,7 +33,7 @@ VehicleAction KeepWithinReach(const SenderRecord& record, const PriorityVehicle&
   // The sensors see a vehicle there that is where its sender says.
   if (IsReappearing(vehicle, stamp, config)) return VehicleAction::GoOn();
   if (record.breaks == 0) return VehicleAction::End();
-  return VehicleAction::Blame({"out_of_reach", Verdict::kWithdraw, "distance_m",
+  return VehicleAction::Blame({Check::kOutOfReach, Verdict::kWithdraw, "distance_m",
                                (p_O - vehicle.coast.state().mean.head<2>()).norm(), 0.0});
 }
 
@@ -64,7 +64,7 @@ VehicleAction UseClaim(const SenderRecord& record, PriorityVehicle& vehicle,
   // last frame had only a part of the vehicle, or the vehicle has turned. Then the bridge just
   // ends.
   if (record.breaks == 0) return VehicleAction::End();
-  return VehicleAction::Blame({"bridge_misfit", Verdict::kWithdraw, "position_nis",
+  return VehicleAction::Blame({Check::kBridgeMisfit, Verdict::kWithdraw, "position_nis",
                                fit.position_nis, config.filter.position_gate});
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "daemon/base/angle.h"
 #include "daemon/v2v_perception/claimed_position.h"
@@ -19,8 +18,8 @@ constexpr double kSpeedFloor_mps = 2.0;
 constexpr int kBreakMemory = 30;  // Messages for which a break of the own motion is held against.
 
 // Findings that a second device under the same id brings, whoever of the two lies.
-bool IsOfAJump(std::string_view check) {
-  return check == "position_jump" || check == "two_places" || check == "own_motion";
+bool IsOfAJump(Check check) {
+  return check == Check::kPositionJump || check == Check::kTwoPlaces || check == Check::kOwnMotion;
 }
 
 // The LOCAL track that a claim's residual is taken against; 0: none.

@@ -13,14 +13,14 @@ namespace v2vouch {
 Occluder ClaimedFootprint(const SenderRecord& record, const Eigen::Vector2d& centre_O,
                           double yaw_rad);
 
-/// Check C11: what the sensors see where the sender says it is, and round there as far as its GNSS
-/// bias may reach (ClaimedPlace::Places).
+/// Check empty_place: what the sensors see where the sender says it is, and round there as far as
+/// its GNSS bias may reach (ClaimedPlace::Places).
 std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> ObserveClaimedPosition(
     const V2vView& view, const SenderRecord& record, const LocalFrame& frame,
     const VisibilityMap& map);
 
-/// Check C12: whether another sender claims the same position and motion, and the sensors see one
-/// vehicle there.
+/// Check shared_place: whether another sender claims the same position and motion, and the sensors
+/// see one vehicle there.
 bool IsPositionShared(const V2vView& view, const SenderRecord& record, Timestamp now);
 
 /// Whether a vehicle may be unseen just before or behind the LOCAL track that the sender is

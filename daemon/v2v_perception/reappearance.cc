@@ -166,7 +166,7 @@ std::optional<Finding> FindSeenElsewhere(const V2vView& view, PriorityVehicle& v
     vehicle.elsewhere_id = track.id;
     vehicle.last_elsewhere = stamp;
     if (vehicle.elsewhere_hits < config.regain_hits) return std::nullopt;
-    return Finding{"seen_elsewhere", Verdict::kWithdraw, "distance_m", apart_m,
+    return Finding{Check::kSeenElsewhere, Verdict::kWithdraw, "distance_m", apart_m,
                    config.contradiction_m};
   }
   return std::nullopt;

@@ -316,7 +316,7 @@ PriorityVehicle* V2vPerception::TakeOver(SenderRecord& record, const ClaimInOdom
     pairs_.SetIncumbent(intruder->sender, std::nullopt);
     pairs_.SetIncumbent(record.sender, vehicle->local_id);
     intruder->trust.OnFinding(here.stamp,
-                              {"contested_identity", Verdict::kWithdraw, "silence_s",
+                              {Check::kContestedIdentity, Verdict::kWithdraw, "silence_s",
                                ToSeconds(here.stamp - vehicle->handover), contest_s},
                               DoubtAt(here.stamp).may_accuse());
     ReportVerdict(*intruder, here.stamp, outputs);

@@ -89,7 +89,7 @@ void TakeMeasurements(PriorityVehicle& vehicle, const TrackSnapshot& seen, const
   vehicle.agreed = Coast(vehicle.filter.kinematics(), frame.stamp);
 }
 
-// Check C11 for a bridged vehicle: is the position where we carry it seen to be empty?
+// Check empty_place for a bridged vehicle: is the position where we carry it seen to be empty?
 void ObserveCarriedPosition(const V2vView& view, PriorityVehicle& vehicle, const LocalFrame& frame,
                             const VisibilityMap& map) {
   const Occluder footprint = FootprintOfVehicle(vehicle);

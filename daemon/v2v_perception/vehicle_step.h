@@ -18,7 +18,7 @@ struct VehicleStep {
 /// One PRIORITY vehicle after an own-sensor frame: takes the measurements that its LOCAL track was
 /// given; is bridged once none has come for BridgeConfig::support_s; while bridged it is looked
 /// for, and ends when its budget, its accuracy or its sender's silence says so, when the position
-/// is seen to be empty (check C11), or when the real vehicle is seen elsewhere.
+/// is seen to be empty (check empty_place), or when the real vehicle is seen elsewhere.
 VehicleStep StepVehicle(const V2vView& view, PriorityVehicle& vehicle, const LocalFrame& frame,
                         const VisibilityMap& map);
 

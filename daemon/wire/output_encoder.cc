@@ -158,10 +158,10 @@ void EncodeReport(const MisbehaviorReport& report, std::vector<std::uint8_t>& by
   to.utime = ToMicros(report.stamp);
   PutSender(report.sender, to.sender_id);
   std::copy(report.certificate.begin(), report.certificate.end(), to.certificate_digest);
-  to.check = Name(report.check);
+  to.check = Name(NameOf(report.check));
   to.verdict = static_cast<std::int8_t>(report.verdict);
-  to.etsi_class = report.etsi_class;
-  to.is_j3287 = report.is_j3287 ? 1 : 0;
+  to.etsi_class = static_cast<std::int8_t>(Describe(report.check).etsi_class);
+  to.is_j3287 = CheckInfo::kIsJ3287 ? 1 : 0;
   for (const Evidence& evidence : report.evidence) {
     evidence_t figure{};
     figure.name = Name(evidence.name);

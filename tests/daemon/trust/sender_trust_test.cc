@@ -100,7 +100,8 @@ TEST(SenderTrust, StrangersAreSuspectedForWhatIsTheirOwnAndNotForTheTrackTheyAre
   }
   EXPECT_EQ(stranger.state(), TrustState::kUnknown);
   EXPECT_FALSE(stranger.TakeVerdict().has_value());
-  stranger.OnFinding(At(5.0), {"empty_place", Verdict::kWithdraw, "log_ratio", -5.0, -4.6}, true);
+  stranger.OnFinding(At(5.0), {Check::kEmptyPlace, Verdict::kWithdraw, "log_ratio", -5.0, -4.6},
+                     true);
   EXPECT_EQ(stranger.state(), TrustState::kSuspect);
   EXPECT_TRUE(stranger.TakeVerdict().has_value());
 }

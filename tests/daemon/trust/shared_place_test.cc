@@ -18,7 +18,7 @@ TEST(SharedPlace, WithdrawsOnceItHasLastedAndNeverAccuses) {
     place.OnLook(At(t), true);
     if (const auto finding = place.Judge(config)) {
       EXPECT_EQ(finding->severity, Verdict::kWithdraw);
-      EXPECT_EQ(finding->check, "shared_place");
+      EXPECT_EQ(finding->check, Check::kSharedPlace);
       EXPECT_GE(finding->value, config.withdraw_s);
       found_s = t;
     }

@@ -121,7 +121,7 @@ TEST(SenderTrust, ATornPairBlamesTheSenderOnlyWhereItsOwnMotionBroke) {
   EXPECT_FALSE(honest.TakeVerdict().has_value());
   SenderTrust liar = torn(false);
   EXPECT_EQ(liar.state(), TrustState::kSuspect);
-  EXPECT_EQ(liar.TakeVerdict()->finding.check, "residual_jump");
+  EXPECT_EQ(liar.TakeVerdict()->finding.check, Check::kResidualJump);
 }
 
 // The sensors lose the vehicle for two seconds and come back to one 8 m off.

@@ -13,7 +13,7 @@ TEST(DelayCheck, JudgesTheMedianOfTenMessages) {
   for (int i = 0; i < 9; ++i) EXPECT_FALSE(check.Judge(1.2, kConfig)) << i;
   const auto finding = check.Judge(1.2, kConfig);
   ASSERT_TRUE(finding);
-  EXPECT_EQ(finding->check, "late_messages");
+  EXPECT_EQ(finding->check, Check::kLateMessages);
   EXPECT_EQ(finding->severity, Verdict::kWithdraw);
   EXPECT_NEAR(finding->value, 1.2, 1e-6);
   EXPECT_EQ(finding->limit, 0.8);
@@ -37,7 +37,7 @@ TEST(SizeCheck, TellsAChangeOnceAndEveryFurtherOne) {
   EXPECT_FALSE(check.Judge(4.6, 1.8, kConfig));
   const auto finding = check.Judge(13.8, 1.8, kConfig);
   ASSERT_TRUE(finding);
-  EXPECT_EQ(finding->check, "size_change");
+  EXPECT_EQ(finding->check, Check::kSizeChange);
   EXPECT_NEAR(finding->value, 9.2, 1e-9);
   EXPECT_EQ(finding->limit, 0.3);
   EXPECT_FALSE(check.Judge(13.8, 1.8, kConfig));  // A correction is not repeated.
@@ -71,7 +71,7 @@ TEST(ImplausibleCheck, TakesThreeOfTen) {
   EXPECT_FALSE(hear(true));
   const auto finding = hear(true);
   ASSERT_TRUE(finding);
-  EXPECT_EQ(finding->check, "implausible");
+  EXPECT_EQ(finding->check, Check::kImplausible);
   EXPECT_EQ(finding->value, 3.0);
 }
 

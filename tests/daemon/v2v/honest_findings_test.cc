@@ -30,7 +30,7 @@ void Add(const std::vector<Bsm>& messages, Tally& tally) {
     ++tally.claims;
     if (!claim->finding) continue;
     ++(claim->finding->severity == Verdict::kAccuse ? tally.accused : tally.withdrawn);
-    ++tally.by_check[std::string(claim->finding->check)];
+    ++tally.by_check[std::string(NameOf(claim->finding->check))];
   }
 }
 

@@ -20,7 +20,7 @@ class IntakeFindings : public ::testing::Test {
       car_.Drive(0.1);
       const auto claim = Hear(car_.Say());
       ASSERT_EQ(WhyNot(claim), kTaken);
-      EXPECT_FALSE(claim->finding) << claim->finding->check;
+      EXPECT_FALSE(claim->finding) << NameOf(claim->finding->check);
     }
   }
 
@@ -42,7 +42,7 @@ TEST_F(IntakeFindings, ImplausibleMessagesAreRefusedAndHeldAgainstTheNextClaim) 
   const auto claim = Hear(car_.Say());
   ASSERT_EQ(WhyNot(claim), kTaken);
   ASSERT_TRUE(claim->finding);
-  EXPECT_EQ(claim->finding->check, "implausible");
+  EXPECT_EQ(claim->finding->check, Check::kImplausible);
 }
 
 TEST_F(IntakeFindings, ImplausibleMessagesOfStrangersLeaveNothingBehind) {
@@ -66,7 +66,7 @@ TEST_F(IntakeFindings, AFloodUnderOneIdIsAccusedOnTheClaimsThatAreTaken) {
       continue;
     }
     if (claim->finding && claim->finding->severity == Verdict::kAccuse) {
-      EXPECT_EQ(claim->finding->check, "message_rate");
+      EXPECT_EQ(claim->finding->check, Check::kMessageRate);
       is_accused = true;
     }
   }
@@ -81,13 +81,13 @@ TEST_F(IntakeFindings, ACoreUnderTwoIdsIsHeldAgainstBothButAccusesNobody) {
   const auto claim = Hear(copy);
   ASSERT_EQ(WhyNot(claim), kTaken);
   ASSERT_TRUE(claim->finding);
-  EXPECT_EQ(claim->finding->check, "contested_core");
+  EXPECT_EQ(claim->finding->check, Check::kContestedCore);
   EXPECT_EQ(claim->finding->severity, Verdict::kWithdraw);
   car_.Drive(0.1);
   const auto next = Hear(car_.Say());
   ASSERT_EQ(WhyNot(next), kTaken);
   ASSERT_TRUE(next->finding);
-  EXPECT_EQ(next->finding->check, "contested_core");
+  EXPECT_EQ(next->finding->check, Check::kContestedCore);
   HearFor(1.0);  // Told once.
 }
 
@@ -106,7 +106,7 @@ TEST_F(IntakeFindings, BackingUpIsHonestWhicheverDirectionIsTold) {
       }
       const auto claim = intake.Accept(bsm, EgoAtCrossroads());
       ASSERT_EQ(WhyNot(claim), kTaken);
-      EXPECT_FALSE(claim->finding) << claim->finding->check << " at " << i;
+      EXPECT_FALSE(claim->finding) << NameOf(claim->finding->check) << " at " << i;
       EXPECT_LE(claim->speed_mps, 0.0);
       EXPECT_GT(claim->course_E.dot(EgoAtCrossroads().course_E), 0.99) << i;
     }
@@ -159,7 +159,7 @@ TEST_F(IntakeFindings, AForwardGearIsHeldToAndSoIsAFastCar) {
         bsm.course_rad = kPi;  // Goes east.
         const auto claim = intake.Accept(bsm, EgoAtCrossroads());
         ASSERT_EQ(WhyNot(claim), kTaken);
-        findings += claim->finding && claim->finding->check == "course_against_path";
+        findings += claim->finding && claim->finding->check == Check::kCourseAgainstPath;
       }
       EXPECT_GT(findings, 50) << speed;
     }
@@ -179,9 +179,9 @@ TEST_F(IntakeFindings, TheGravestIsTold) {
     ASSERT_TRUE(claim->finding);
     findings.push_back(*claim->finding);
   }
-  EXPECT_EQ(findings[0].check, "position_jump");
+  EXPECT_EQ(findings[0].check, Check::kPositionJump);
   EXPECT_EQ(findings[0].severity, Verdict::kWithdraw);
-  EXPECT_EQ(findings[3].check, "position_jump");
+  EXPECT_EQ(findings[3].check, Check::kPositionJump);
   EXPECT_EQ(findings[3].severity, Verdict::kAccuse);
 }
 

@@ -24,7 +24,7 @@ using Lie = std::function<void(Bsm& bsm, const Bsm& first, int n, Random& random
 struct Case {
   const char* name;
   Lie lie;
-  const char* check;        // The one that must find it ...
+  Check check;              // The one that must find it ...
   double least_share;       // ... in this share of the messages from 2 s on while it drives,
   double most_median_s;     // with the first one after this at the median.
   bool is_accused = false;  // Whether it must come to an accusation.
@@ -103,59 +103,59 @@ Lie Turned(double by_deg) {
 INSTANTIATE_TEST_SUITE_P(
     Catalogue, Lies,
     ::testing::Values(
-        Case{"speed + 2 m/s", Speed(2.0), "speed_against_path", 0.7, 4.0},
-        Case{"speed + 4 m/s", Speed(4.0), "speed_against_path", 0.9, 2.0},
-        Case{"speed + 7 m/s", Speed(7.0), "speed_against_path", 0.95, 1.5},
-        Case{"speed - 3 m/s", Speed(-3.0), "speed_against_path", 0.9, 3.0},
+        Case{"speed + 2 m/s", Speed(2.0), Check::kSpeedAgainstPath, 0.7, 4.0},
+        Case{"speed + 4 m/s", Speed(4.0), Check::kSpeedAgainstPath, 0.9, 2.0},
+        Case{"speed + 7 m/s", Speed(7.0), Check::kSpeedAgainstPath, 0.95, 1.5},
+        Case{"speed - 3 m/s", Speed(-3.0), Check::kSpeedAgainstPath, 0.9, 3.0},
         Case{"zero speed", [](Bsm& bsm, const Bsm&, int, Random&) { bsm.speed_mps = 0.0; },
-             "speed_against_path", 0.95, 1.5, true},
+             Check::kSpeedAgainstPath, 0.95, 1.5, true},
         Case{"40 m/s", [](Bsm& bsm, const Bsm&, int, Random&) { bsm.speed_mps = 40.0; },
-             "speed_against_path", 0.95, 1.5, true},
+             Check::kSpeedAgainstPath, 0.95, 1.5, true},
         Case{"random speed",
              [](Bsm& bsm, const Bsm&, int, Random& random) {
                const double offset =
                    random.Uniform(1.0, 7.0) * (random.Bernoulli(0.5) ? 1.0 : -1.0);
                *bsm.speed_mps = std::abs(*bsm.speed_mps + offset);
              },
-             "own_motion", 0.9, 2.0},
-        Case{"reversed heading", Turned(180.0), "course_against_path", 0.95, 1.5, true},
-        Case{"heading + 90", Turned(90.0), "course_against_path", 0.95, 1.5, true},
-        Case{"heading + 30", Turned(30.0), "course_against_path", 0.8, 3.0},
+             Check::kOwnMotion, 0.9, 2.0},
+        Case{"reversed heading", Turned(180.0), Check::kCourseAgainstPath, 0.95, 1.5, true},
+        Case{"heading + 90", Turned(90.0), Check::kCourseAgainstPath, 0.95, 1.5, true},
+        Case{"heading + 30", Turned(30.0), Check::kCourseAgainstPath, 0.8, 3.0},
         Case{"heading + 18 per message",
              [](Bsm& bsm, const Bsm&, int n, Random&) {
                bsm.course_rad = WrapAngle(*bsm.course_rad + FromDegrees(18.0) * n);
              },
-             "speed_against_path", 0.9, 2.0},
+             Check::kSpeedAgainstPath, 0.9, 2.0},
         Case{"frozen place",
              [](Bsm& bsm, const Bsm& first, int, Random&) {
                bsm.latitude_rad = first.latitude_rad;
                bsm.longitude_rad = first.longitude_rad;
              },
-             "speed_against_path", 0.95, 1.7, true},
+             Check::kSpeedAgainstPath, 0.95, 1.7, true},
         Case{"sudden stop",
              [](Bsm& bsm, const Bsm& first, int, Random&) {
                bsm.latitude_rad = first.latitude_rad;
                bsm.longitude_rad = first.longitude_rad;
                bsm.speed_mps = 0.0;
              },
-             "implausible_motion", 0.0, 0.3},
+             Check::kImplausibleMotion, 0.0, 0.3},
         Case{"random offset 20 to 70 m",
              [](Bsm& bsm, const Bsm&, int, Random& random) {
                const double side = random.Bernoulli(0.5) ? 1.0 : -1.0;
                *bsm.latitude_rad += side * random.Uniform(20.0, 70.0) * kMetre_rad;
              },
-             "position_jump", 0.4, 0.3, true},
+             Check::kPositionJump, 0.4, 0.3, true},
         Case{"one teleport of 30 m",
              [](Bsm& bsm, const Bsm&, int, Random&) { *bsm.latitude_rad += 30.0 * kMetre_rad; },
-             "position_jump", 0.0, 0.1},
+             Check::kPositionJump, 0.0, 0.1},
         Case{"one second late",
              [](Bsm& bsm, const Bsm&, int, Random&) {
                bsm.sec_mark_ms = (*bsm.sec_mark_ms + 59000) % 60000;
              },
-             "late_messages", 0.95, 1.2},
+             Check::kLateMessages, 0.95, 1.2},
         Case{"size per message",
              [](Bsm& bsm, const Bsm&, int n, Random&) { bsm.length_m = n % 2 == 0 ? 4.6 : 5.2; },
-             "size_change", 0.95, 0.3}),
+             Check::kSizeChange, 0.95, 0.3}),
     [](const auto& test) { return "Case" + std::to_string(test.index); });
 
 }  // namespace

@@ -13,7 +13,7 @@ TEST(InnovationCheck, JudgesTheMeanOfTen) {
   for (int i = 0; i < 9; ++i) EXPECT_FALSE(check.Judge(30.0, 4, 0.1, kConfig));
   const auto finding = check.Judge(30.0, 4, 0.1, kConfig);
   ASSERT_TRUE(finding);
-  EXPECT_EQ(finding->check, "own_motion");
+  EXPECT_EQ(finding->check, Check::kOwnMotion);
   EXPECT_EQ(finding->severity, Verdict::kWithdraw);
   EXPECT_NEAR(finding->value, 30.0 / 1.16, 1e-3);  // 1 + (0.1 / 0.25)^2.
 }
@@ -50,7 +50,7 @@ TEST_F(JumpCheckTest, AJumpIsWithdrawnOnce) {
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(Hear(0.0));
   const auto finding = Hear(30.0);
   ASSERT_TRUE(finding);
-  EXPECT_EQ(finding->check, "position_jump");
+  EXPECT_EQ(finding->check, Check::kPositionJump);
   EXPECT_EQ(finding->severity, Verdict::kWithdraw);
   EXPECT_NEAR(finding->value, 30.0, 1e-9);
   EXPECT_EQ(finding->limit, 8.0);
@@ -89,7 +89,7 @@ TEST_F(JumpCheckTest, TwoPlacesInTurnsAreNoAccusation) {
     const auto finding = Hear(i % 2 == 0 ? 15.0 : 0.0);
     ASSERT_TRUE(finding);
     EXPECT_EQ(finding->severity, Verdict::kWithdraw);
-    two_places += finding->check == "two_places" ? 1 : 0;
+    two_places += finding->check == Check::kTwoPlaces ? 1 : 0;
   }
   EXPECT_EQ(two_places, 49);  // The first could still have been a jump.
 }
@@ -112,7 +112,7 @@ TEST(SpeedStepCheck, TwoMessagesMakeAStep) {
   EXPECT_FALSE(check.Judge(0.2, 0.0, kConfig));
   const auto finding = check.Judge(0.3, 0.0, kConfig);
   ASSERT_TRUE(finding);
-  EXPECT_EQ(finding->check, "implausible_motion");
+  EXPECT_EQ(finding->check, Check::kImplausibleMotion);
   EXPECT_NEAR(finding->value, -100.0, 1e-6);
   EXPECT_EQ(finding->limit, 12.0);
   EXPECT_FALSE(check.Judge(0.4, 0.0, kConfig));

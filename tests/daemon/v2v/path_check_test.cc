@@ -66,7 +66,7 @@ TEST(PathCheck, ASenderThatMovesButSaysItStandsIsFoundAndInTheEndAccused) {
   for (int i = 1; i <= 150; ++i) {
     const auto finding = story.Step({10.5, 0.0}, 0.0);
     if (!finding) continue;
-    EXPECT_EQ(finding->check, "speed_against_path");
+    EXPECT_EQ(finding->check, Check::kSpeedAgainstPath);
     EXPECT_NEAR(finding->value, 10.5, 0.01);
     EXPECT_GT(finding->value, finding->limit);
     if (first == 0) first = i;
@@ -99,7 +99,7 @@ TEST(PathCheck, ATurnedCourseIsFound) {
   std::optional<Finding> last;
   for (int i = 0; i < 100; ++i) last = story.Step({10.0, 0.0}, 10.0, FromDegrees(150.0));
   ASSERT_TRUE(last);
-  EXPECT_EQ(last->check, "course_against_path");
+  EXPECT_EQ(last->check, Check::kCourseAgainstPath);
   EXPECT_NEAR(last->value, FromDegrees(150.0), 1e-3);
   EXPECT_EQ(last->severity, Verdict::kAccuse);
 }

@@ -30,7 +30,7 @@ int Worst(const std::vector<double>& times_s) {
     }
     tokens -= 1.0;
     if (const auto finding = check.Judge(At(time_s), kConfig)) {
-      EXPECT_EQ(finding->check, "message_rate");
+      EXPECT_EQ(finding->check, Check::kMessageRate);
       EXPECT_GT(finding->value, finding->limit * 0.999);
       worst = std::max(worst, static_cast<int>(finding->severity));
     }

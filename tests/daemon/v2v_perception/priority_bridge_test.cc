@@ -56,7 +56,7 @@ TEST(PriorityBridge, StrayHitsElsewhereEndNoBridge) {
     }
     EXPECT_EQ(scene.Priority().size(), hits == 3 ? 1u : 0u) << hits;
     EXPECT_EQ(scene.outputs.reports.empty(), hits == 3);
-    for (const auto& report : scene.outputs.reports) EXPECT_EQ(report.check, "seen_elsewhere");
+    for (const auto& report : scene.outputs.reports) EXPECT_EQ(report.check, Check::kSeenElsewhere);
   }
 }
 
@@ -72,7 +72,7 @@ TEST(PriorityBridge, PlaceInClearViewThatIsEmptyEndsTheBridgeWithinASecond) {
   ASSERT_NE(ended, Timestamp{});
   EXPECT_LT(ToSeconds(ended - lost), 1.4);  // 0.35 s of missing support and about a second.
   ASSERT_FALSE(scene.outputs.reports.empty());
-  EXPECT_EQ(scene.outputs.reports[0].check, "empty_place");
+  EXPECT_EQ(scene.outputs.reports[0].check, Check::kEmptyPlace);
   EXPECT_EQ(scene.outputs.reports[0].verdict, Verdict::kWithdraw);
   EXPECT_EQ(scene.perception.TrustOf(1), TrustState::kSuspect);
 }

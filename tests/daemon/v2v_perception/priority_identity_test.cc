@@ -23,7 +23,7 @@ TEST(PriorityIdentity, SeveralIdsThatClaimOneCarFromTheFirstAreAllWithdrawnNotAc
 // The message stream then jumps with every message of either; who of them lies is seen by the
 // sensors alone.
 TEST(PriorityIdentity, ImpersonatedVehicleGoesOnWhileItIsSeen) {
-  for (const char* check : {"position_jump", "two_places", "own_motion"}) {
+  for (const Check check : {Check::kPositionJump, Check::kTwoPlaces, Check::kOwnMotion}) {
     Scene scene = Validated(7);
     const Finding jump{check, Verdict::kWithdraw, "displacement_m", 12.0, 3.0};
     scene.Run(4.0, [&] {
@@ -33,10 +33,10 @@ TEST(PriorityIdentity, ImpersonatedVehicleGoesOnWhileItIsSeen) {
       } else if (scene.frames % 4 == 1) {
         scene.Say(1, car.p + Eigen::Vector2d(0.0, -12.0), kPi, 5.0, 0.3, 60.0, jump);
       }
-      ASSERT_EQ(scene.Priority().size(), 1u) << check;
-      EXPECT_LT(ErrorOf(scene.Priority()[0], car), 1.0) << check;
+      ASSERT_EQ(scene.Priority().size(), 1u) << NameOf(check);
+      EXPECT_LT(ErrorOf(scene.Priority()[0], car), 1.0) << NameOf(check);
     });
-    EXPECT_TRUE(scene.outputs.reports.empty()) << check;
+    EXPECT_TRUE(scene.outputs.reports.empty()) << NameOf(check);
   }
 }
 
