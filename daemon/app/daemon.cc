@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/app/background_publisher.h"
 #include "daemon/app/foreign_outputs.h"
 #include "daemon/app/latency_meter.h"
 #include "daemon/app/message_queue.h"
@@ -46,7 +47,8 @@ class Daemon {
         queue_(static_cast<std::size_t>(config.lcm.own_queue),
                static_cast<std::size_t>(config.lcm.bsm_queue)),
         detect_(engine_.decoder(), detector, queue_),
-        trust_(config.state, config.perception.vehicle.id) {
+        trust_(config.state, config.perception.vehicle.id),
+        background_(config.lcm.url) {
     const bool has_own_v2v_bus = !config.lcm.v2v_url.empty();
     ports_ = {LcmUdpPort(EffectiveLcmUrl(config.lcm.url))};
     if (has_own_v2v_bus) ports_.push_back(LcmUdpPort(config.lcm.v2v_url));
@@ -64,7 +66,8 @@ class Daemon {
     }
     own_bus_ = std::make_unique<Receiver>(config.lcm.url, std::move(own));
     if (has_own_v2v_bus) {
-      v2v_bus_ = std::make_unique<Receiver>(config.lcm.v2v_url, std::move(v2v));
+      v2v_bus_ =
+          std::make_unique<Receiver>(config.lcm.v2v_url, std::move(v2v), Receiver::Priority::kLow);
     }
   }
 
@@ -179,6 +182,10 @@ class Daemon {
       const bool is_watched = std::ranges::any_of(
           WatchedOutputs(), [&](const std::string* output) { return message.channel == *output; });
       if (is_watched) foreign_.Sent(message.bytes);
+      if (message.channel == config_.lcm.channels.tracks_v2v) {
+        background_.Offer(message.channel, message.bytes);
+        continue;
+      }
       own_bus_->Publish(message.channel, message.bytes);
       if (message.channel == config_.lcm.channels.status) last_status_ = Clock::now();
     }
@@ -317,6 +324,7 @@ class Daemon {
   MessageQueue queue_;
   DetectThread detect_;
   TrustKeeper trust_;
+  BackgroundPublisher background_;
   LatencyMeter queue_wait_{"queue_wait"};
   LatencyMeter step_{"step"};
   LatencyMeter input_to_list_{"input_to_list"};  // From the network: its boxes to the list.

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <utility>
 
+#include "daemon/app/low_priority.h"
+
 namespace v2vouch {
 namespace {
 
@@ -17,8 +19,11 @@ constexpr milliseconds kSlice{50};  // How soon a stop is noticed.
 
 }  // namespace
 
-Receiver::Receiver(std::string url, std::vector<Subscription> subscriptions)
-    : url_(std::move(url)), subscriptions_(std::move(subscriptions)), thread_([this] { Run(); }) {}
+Receiver::Receiver(std::string url, std::vector<Subscription> subscriptions, Priority priority)
+    : url_(std::move(url)),
+      subscriptions_(std::move(subscriptions)),
+      priority_(priority),
+      thread_([this] { Run(); }) {}
 
 Receiver::~Receiver() {
   must_stop_ = true;
@@ -37,6 +42,7 @@ bool Receiver::Open() {
 }
 
 void Receiver::Run() {
+  if (priority_ == Priority::kLow) LowerThreadPriority();  // And that of liblcm's own thread.
   for (milliseconds pause = kFirstPause; !must_stop_ && !Open();
        pause = std::min(2 * pause, kLongestPause)) {
     ++failures_;

@@ -22,7 +22,10 @@ class Receiver {
     LcmBus::Handler sink;
   };
 
-  Receiver(std::string url, std::vector<Subscription> subscriptions);
+  enum class Priority { kNormal, kLow };
+
+  Receiver(std::string url, std::vector<Subscription> subscriptions,
+           Priority priority = Priority::kNormal);
   ~Receiver();
 
   /// False while the bus is not open yet.
@@ -37,6 +40,7 @@ class Receiver {
 
   std::string url_;
   std::vector<Subscription> subscriptions_;
+  Priority priority_;
   std::unique_ptr<LcmBus> bus_;  // Set once by the thread before is_open_.
   std::atomic<bool> is_open_ = false;
   std::atomic<bool> must_stop_ = false;

@@ -130,6 +130,9 @@ void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
   }
 
   if (outputs_.has_lists) PublishLists(outbox);
+  if (outputs_.has_v2v_list) {
+    wire::EncodeList(outputs_.v2v, outbox.Add(config_.lcm.channels.tracks_v2v));
+  }
   for (const MisbehaviorReport& report : outputs_.reports) {
     wire::EncodeReport(report, outbox.Add(config_.lcm.channels.misbehavior));
   }
@@ -156,7 +159,6 @@ void Engine::PublishLists(Outbox& outbox) {
   wire::EncodeList(outputs_.priority, list_bytes_);
   digest_priority_.Add(list_bytes_);
   Send(names.tracks_priority, outputs_.priority.stamp, published_.priority, outbox);
-  if (outputs_.has_v2v_list) wire::EncodeList(outputs_.v2v, outbox.Add(names.tracks_v2v));
   status_.local_tracks = static_cast<int>(outputs_.local.tracks.size());
   status_.priority_tracks = static_cast<int>(outputs_.priority.tracks.size());
 }

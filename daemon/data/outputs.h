@@ -86,8 +86,9 @@ struct MisbehaviorReport {
 
 /// All that one step gave. Reused from step to step.
 struct Outputs {
-  bool has_lists = false;     ///< `local` and `priority` are new.
-  bool has_v2v_list = false;  ///< `v2v` is new; it comes ten times a second, not with every frame.
+  bool has_lists = false;  ///< `local` and `priority` are new.
+  /// `v2v` is new. It comes ten times a second, with a frame or, where it is long, soon after.
+  bool has_v2v_list = false;
   TrackList local;
   TrackList priority;
   TrackList v2v;

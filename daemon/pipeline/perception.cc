@@ -73,6 +73,7 @@ struct Perception::State {
   std::optional<Reason> OnBsm(const Bsm& bsm, Outputs& outputs);
   void Tell(const Bsm& bsm, std::optional<Reason> refusal, Outputs& outputs) const;
   void Settle();
+  void ListSenders(Outputs& outputs);
   void Restart();
   bool IsTooFarAhead(const NoticeSubject& guest, Timestamp stamp);
   [[nodiscard]] EgoPlace Place() const;
@@ -89,6 +90,7 @@ struct Perception::State {
   int revision = 0;
   Timestamp listed{};
   Timestamp v2v_listed{};
+  SenderList sender_list;
 };
 
 Perception::Perception(const PerceptionConfig& config, std::unique_ptr<BiasEstimator> bias)
@@ -113,6 +115,7 @@ std::optional<Reason> Perception::Step(const Input& input, Outputs& outputs) {
       },
       input);
   state.Settle();
+  state.ListSenders(outputs);
   return refusal;
 }
 
@@ -197,6 +200,15 @@ void Perception::State::Settle() {
   if (timeline.settled() != Timestamp{}) bias->AdvanceTo(timeline.settled() - kTick);
 }
 
+// A frame only begins a list, and ends it where one piece is all.
+void Perception::State::ListSenders(Outputs& outputs) {
+  if (!sender_list.is_open() || (outputs.has_lists && !sender_list.is_new())) return;
+  if (!sender_list.Continue(intake, timeline.priority(), bias->report())) return;
+  outputs.has_v2v_list = true;
+  sender_list.Take(outputs.v2v);
+  outputs.v2v.seq = ++v2v_lists;
+}
+
 void Perception::State::Restart() {
   // A step of the clock washes nobody's penalty off.
   std::vector<TrustMemory> kept = timeline.priority().TrustToKeep(timeline.newest_time());
@@ -206,6 +218,7 @@ void Perception::State::Restart() {
   bias->Restart();
   listed = {};
   v2v_listed = {};
+  sender_list = {};
   revision = 0;
 }
 
@@ -242,12 +255,9 @@ void Perception::State::Publish(bool is_correction, Outputs& outputs) {
   outputs.priority.ego_gnss_suspect = timeline.priority().is_ego_gnss_suspect();
   timeline.priority().Publish(at, ego_at, outputs.priority);
 
-  if (at - v2v_listed >= FromSeconds(kV2vListPeriod_s)) {
+  if (at - v2v_listed >= FromSeconds(kV2vListPeriod_s) && !sender_list.is_open()) {
     v2v_listed = at;
-    outputs.has_v2v_list = true;
-    outputs.v2v = outputs.priority;
-    outputs.v2v.seq = ++v2v_lists;
-    ListSenders(intake.senders(), timeline.priority(), bias->report(), at, outputs.v2v.tracks);
+    sender_list.Open(outputs.priority, intake.senders());
   }
 }
 

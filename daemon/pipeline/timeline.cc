@@ -180,12 +180,13 @@ bool Timeline::IsTooDeep(const EventKey& claim) const {
 
 Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outputs& outputs) {
   const EventKey key = KeyOf(input);
-  AdvanceTo(agreed);
+  const bool is_local = IsLocal(input);
+  // What LOCAL may cost is counted by its own inputs alone.
+  if (is_local) AdvanceTo(agreed);
   if (const auto reason = WhyNot(input)) {
     outputs.Refuse(*reason, key.time);
     return {.refusal = reason};
   }
-  const bool is_local = IsLocal(input);
   if ((is_local && !IsAffordable(input)) || (key.rank == kClaimRank && IsTooDeep(key))) {
     outputs.Refuse(Reason::kOverBudget, key.time);
     return {.refusal = Reason::kOverBudget};

@@ -28,7 +28,12 @@ Exit codes: 0 done; 1 the log could not be read or written, the run was stopped,
 
 bool ShowProgress(double share) {
   static const bool is_terminal = isatty(STDERR_FILENO) == 1;
-  if (is_terminal) std::fprintf(stderr, "\rreplaying %3.0f %%", 100.0 * share);
+  static int shown = -1;
+  const int percent = static_cast<int>(100.0 * share);
+  if (is_terminal && percent != shown) {
+    std::fprintf(stderr, "\rreplaying %3d %%", percent);
+    shown = percent;
+  }
   return !v2vouch::IsStopAsked();
 }
 

@@ -15,7 +15,6 @@ namespace v2vouch {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
-constexpr std::int64_t kEventsPerProgress = 4096;
 
 double Microseconds(SteadyClock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
@@ -130,7 +129,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
     ++result.events;
     first = std::min(first, event.received);
     last = std::max(last, event.received);
-    if (result.events % kEventsPerProgress == 0 && !progress(reader->progress())) {
+    if (!progress(reader->progress())) {
       error = "stopped";
       return false;
     }

@@ -54,7 +54,8 @@ struct ReplayResult {
 /// behind it. Recorded outputs of an earlier run are dropped and counted; every other channel goes
 /// through untouched. No network runs: a camera with `source: image` is taken as `detected`, so the
 /// boxes that were recorded with its pictures are the input.
-/// @param progress called now and then with the share done, 0..1; returning false stops the run.
+/// @param progress called before every event, a step of which may take milliseconds, with the share
+/// done, 0..1; returning false stops the run.
 /// @return false with `error` set when a file cannot be read or written, or when stopped.
 bool Replay(const std::string& in, const std::string& out, const DaemonConfig& config,
             const std::function<bool(double)>& progress, ReplayResult& result, std::string& error);

@@ -45,6 +45,8 @@ constexpr double kCoastingSince_s = 0.5;
 // More tracks than this are not started by one frame.
 constexpr std::size_t kMostNewcomers = 64;
 constexpr std::size_t kMostBoxes = 128;
+// More that are not listed are not kept: every one of them costs as much as a vehicle.
+constexpr std::size_t kMostGuesses = 128;
 // What a vehicle was called is remembered for some twenty pictures: a name that was wrong for a
 // while is overcome as fast.
 constexpr double kVoteMemory = 0.95;
@@ -208,15 +210,28 @@ void Tracker::Associate(std::size_t measurements) {
   }
 }
 
+// What a frame holds beyond the vehicles that are listed and a crowd of new ones is clutter,
+// however little the sensor promised: interference would else be published as vehicles everywhere.
+double Tracker::Crowd(std::size_t detections) const {
+  const auto listed = std::ranges::count_if(tracks_, &LocalTrack::is_confirmed);
+  return static_cast<double>(detections) - static_cast<double>(listed) -
+         static_cast<double>(kMostNewcomers);
+}
+
 void Tracker::PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements) {
   const RadarConfig& radar = look.radar;
   const double cells = (radar.max_range_m - radar.min_range_m) * 2.0 * radar.half_fov_rad;
   const double births = config_.birth_per_m2_s * radar.period_s * radar.half_fov_rad *
                         radar.max_range_m * radar.max_range_m;
-  const double birth_existence = BirthExistence(births, radar.clutter_per_scan);
   double standing = 1.0;
   for (const RadarMeasurement& z : measurements) standing += z.is_static ? 1.0 : 0.0;
-  const double moving_density = radar.clutter_per_scan / (cells * kDopplerSpan_mps);
+  const std::size_t moving = measurements.size() + 1 - static_cast<std::size_t>(standing);
+  const double crowd = Crowd(moving);
+  const bool is_crowded = crowd > radar.clutter_per_scan;
+  const double clutter = is_crowded ? crowd : radar.clutter_per_scan;
+  if (is_crowded) crowd_shape_.Fill(radar, measurements);
+  const double birth_existence = BirthExistence(births, clutter);
+  const double moving_density = clutter / (cells * kDopplerSpan_mps);
   const double static_density = standing / (cells * kStaticDopplerSpan_mps);
 
   candidates_.Clear();
@@ -231,8 +246,9 @@ void Tracker::PrepareRadar(const RadarLook& look, std::span<const RadarMeasureme
       candidate.p_O.setConstant(std::numeric_limits<double>::max() / 4.0);
     }
     candidate.birth_existence = birth_existence;
-    candidate.log_density =
-        std::log((z.is_static ? static_density : moving_density) / (1.0 - birth_existence));
+    double density = z.is_static ? static_density : moving_density;
+    if (is_crowded && !z.is_static) density *= crowd_shape_.At(z);
+    candidate.log_density = std::log(density / (1.0 - birth_existence));
     candidates_.Add(candidate);
   }
   candidates_.Sort();
@@ -360,13 +376,14 @@ void Tracker::PrepareCamera(const CameraLook& look,
   const double half_fov_rad = std::atan2(0.5 * camera.image_width_px, camera.fx_px);
   const double reach_m = config_.camera_birth_range_m;
   const double births = config_.birth_per_m2_s * camera.period_s * half_fov_rad * reach_m * reach_m;
-  const double birth_existence = BirthExistence(births, camera.clutter_per_image);
+  const double clutter =
+      std::max(camera.clutter_per_image, Crowd(std::min(measurements.size(), kMostBoxes)));
+  const double birth_existence = BirthExistence(births, clutter);
   candidates_.Clear();
   for (const CameraMeasurement& z : measurements) {
     Candidate candidate;
     candidate.birth_existence = birth_existence;
-    candidate.log_density =
-        std::log(camera.clutter_per_image / Cells(z, look) / (1.0 - birth_existence));
+    candidate.log_density = std::log(clutter / Cells(z, look) / (1.0 - birth_existence));
     candidate.may_start = IsFinite(z);
     candidates_.Add(candidate);
   }
@@ -551,6 +568,7 @@ void Tracker::Conclude(double dt_s) {
   }
   DropDuplicates(dt_s);
   JoinParts(dt_s);
+  DropUnlikely();
   RemoveDead();
   // Births come in order of their index; only two sensors with one stamp can need more than this.
   for (std::size_t i = 1; i < tracks_.size(); ++i) {
@@ -559,6 +577,25 @@ void Tracker::Conclude(double dt_s) {
       std::swap(hidden_[k], hidden_[k - 1]);
     }
   }
+}
+
+// Of many tracks that are not listed the likeliest stay. Whole poses come from a sensor that has
+// made up its mind: they are not counted.
+void Tracker::DropUnlikely() {
+  newcomers_.clear();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const bool may_go = !tracks_[i].is_confirmed && hidden_[i].pose_hits == 0;
+    if (may_go && !hidden_[i].is_dead) newcomers_.push_back(static_cast<int>(i));
+  }
+  if (newcomers_.size() <= kMostGuesses) return;
+  std::ranges::sort(newcomers_, {}, [&](int i) {
+    const LocalTrack& track = tracks_[static_cast<std::size_t>(i)];
+    return std::pair(-track.existence, track.id);
+  });
+  for (std::size_t k = kMostGuesses; k < newcomers_.size(); ++k) {
+    hidden_[static_cast<std::size_t>(newcomers_[k])].is_dead = true;
+  }
+  failures_.push_back(Reason::kTrackTableFull);
 }
 
 void Tracker::ForgetUnpicturedSince(Timestamp since) {

@@ -18,6 +18,7 @@
 #include "daemon/data/vehicle.h"
 #include "daemon/models/ctra.h"
 #include "daemon/tracking/candidates.h"
+#include "daemon/tracking/crowd_shape.h"
 #include "daemon/tracking/existence.h"
 #include "daemon/tracking/glances.h"
 #include "daemon/tracking/track_filter.h"
@@ -208,6 +209,7 @@ class Tracker {
   void AddPair(std::size_t track, std::size_t measurement, const Likelihood& likelihood,
                double log_cells);
   void PreparePoses(const PoseSensor& sensor, std::span<const PoseMeasurement> poses);
+  [[nodiscard]] double Crowd(std::size_t detections) const;
   void PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void PrepareCamera(const CameraLook& look, std::span<const CameraMeasurement> measurements);
   void AskDetectability(int sensor, const DetectabilityOf& detectability);
@@ -256,6 +258,7 @@ class Tracker {
   [[nodiscard]] bool Borrows(std::size_t i, std::size_t j) const;
   [[nodiscard]] bool IsConvincing(std::size_t track) const;
   void Conclude(double dt_s);
+  void DropUnlikely();
   void RemoveDead();
 
   TrackerConfig config_;
@@ -274,6 +277,7 @@ class Tracker {
 
   // Working memory of one update.
   Scratch<Candidates> candidates_;
+  Scratch<CrowdShape> crowd_shape_;
   Scratch<PlaceIndex> places_;
   Scratch<std::vector<RadarMeasurement>> joined_;
   Scratch<std::vector<double>> detection_, missing_, missed_, lone_;

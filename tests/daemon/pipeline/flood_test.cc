@@ -130,5 +130,33 @@ TEST(FloodedPerceptionBySybils, NeverOutnumberTheCarsNorDriveOutTheValidated) {
   EXPECT_EQ(flooded.accused, 0);
 }
 
+// A frame's own step must not take the time that a thousand lines cost.
+TEST(Flood, AListOfManySendersIsMadeInPiecesAfterTheFrames) {
+  const SyntheticDrive drive = TwoCars();
+  Perception perception(PerceptionConfig{}, std::make_unique<NullBiasEstimator>());
+  Outputs outputs;
+  std::size_t most_with_a_frame = 0;
+  std::size_t most = 0;
+  int lists = 0;
+  Timestamp last{};
+  for (const Input& input :
+       Merged(MakeInputs(drive), FloodOf(FloodKind::kCrowd, 10000.0, kFlood_s, drive))) {
+    perception.Step(input, outputs);
+    if (!outputs.has_v2v_list) continue;
+    ++lists;
+    EXPECT_GT(outputs.v2v.stamp, last);
+    last = outputs.v2v.stamp;
+    const auto& lines = outputs.v2v.tracks;
+    EXPECT_TRUE(std::ranges::is_sorted(lines, std::ranges::less_equal{},
+                                       [](const auto& line) { return line.track.id; }) ||
+                lines.size() < 2);
+    most = std::max(most, lines.size());
+    if (outputs.has_lists) most_with_a_frame = std::max(most_with_a_frame, lines.size());
+  }
+  EXPECT_GT(most, 900u);
+  EXPECT_GT(lists, 80);
+  EXPECT_LE(most_with_a_frame, 32u);
+}
+
 }  // namespace
 }  // namespace v2vouch

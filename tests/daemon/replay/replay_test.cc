@@ -75,6 +75,18 @@ ReplayResult RunLog(const std::string& in, const std::string& out) {
   return result;
 }
 
+// A log of slow steps, full radars say, must not go on for seconds.
+TEST_F(ReplayTest, StopsBeforeTheNextEventWhereItIsAsked) {
+  const std::string in = Save("in.lcm", Drive());
+  ReplayResult result;
+  std::string error;
+  int asked = 0;
+  EXPECT_FALSE(Replay(
+      in, Path("out.lcm"), DaemonConfig{}, [&](double) { return ++asked < 10; }, result, error));
+  EXPECT_EQ(error, "stopped");
+  EXPECT_EQ(result.events, 10);
+}
+
 TEST_F(ReplayTest, OutputHoldsAllEventsAndEachOutputBehindItsCause) {
   auto messages = Drive();
   messages.insert(messages.begin() + 5, {"TRUTH", {1, 2, 3}, messages[5].received});
