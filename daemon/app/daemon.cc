@@ -235,7 +235,7 @@ class Daemon {
       const RefusalTable::Row& row = rows[i];
       if (row.count == logged_[i]) continue;
       spdlog::warn("event=refused channel={} reason={} field=\"{}\" count={} total={}", row.channel,
-                   ReasonName(row.refusal.reason), row.refusal.field, row.count - logged_[i],
+                   ReasonName(row.refusal.reason), row.FieldText(), row.count - logged_[i],
                    row.count);
       logged_[i] = row.count;
       ++lines;

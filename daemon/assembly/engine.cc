@@ -45,7 +45,7 @@ void Engine::OnMessage(std::string_view channel, std::span<const std::uint8_t> b
   dropped_.Clear();
   const auto decoded = decoder_.Decode(*index, bytes, received, dropped_);
   for (const RefusalTally::Entry& entry : dropped_.entries()) {
-    Refuse(*index, entry.refusal, entry.count);
+    Refuse(*index, entry.refusal, entry.count, entry.text);
   }
   if (!decoded) return Refuse(*index, decoded.refusal());
   if (const auto* input = std::get_if<Input>(&*decoded)) {
@@ -76,14 +76,16 @@ void Engine::OnRefused(std::string_view channel, const Refusal& refusal, Timesta
   Refuse(*index, refusal);
 }
 
-void Engine::Refuse(std::string_view channel, const Refusal& refusal, std::uint64_t count) {
+void Engine::Refuse(std::string_view channel, const Refusal& refusal, std::uint64_t count,
+                    std::string_view text) {
   refusals_[static_cast<std::size_t>(refusal.reason)] += count;
-  refusal_table_.Add(channel, refusal, count);
+  refusal_table_.Add(channel, refusal, count, text);
 }
 
-void Engine::Refuse(std::size_t channel, const Refusal& refusal, std::uint64_t count) {
+void Engine::Refuse(std::size_t channel, const Refusal& refusal, std::uint64_t count,
+                    std::string_view text) {
   const wire::InputChannel& from = decoder_.channels()[channel];
-  Refuse(from.name, WithField(refusal, from.kind), count);
+  Refuse(from.name, WithField(refusal, from.kind), count, text);
 }
 
 // A message may bring out the refusal of an earlier one, which it made the core step again.

@@ -115,8 +115,10 @@ class Engine {
   void Monitor(const Input& input);
   void PublishLists(Outbox& outbox);
   void Send(const std::string& channel, Timestamp stamp, Timestamp& newest, Outbox& outbox);
-  void Refuse(std::string_view channel, const Refusal& refusal, std::uint64_t count = 1);
-  void Refuse(std::size_t channel, const Refusal& refusal, std::uint64_t count = 1);
+  void Refuse(std::string_view channel, const Refusal& refusal, std::uint64_t count = 1,
+              std::string_view text = {});
+  void Refuse(std::size_t channel, const Refusal& refusal, std::uint64_t count = 1,
+              std::string_view text = {});
   [[nodiscard]] std::size_t ChannelOf(const Diagnostic& diagnostic, std::size_t current) const;
 
   DaemonConfig config_;

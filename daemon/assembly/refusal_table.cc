@@ -5,14 +5,17 @@
 
 namespace v2vouch {
 
-RefusalTable::Row* RefusalTable::Find(std::string_view channel, const Refusal& refusal) {
-  const auto at = std::ranges::find_if(
-      rows_, [&](const Row& row) { return row.refusal == refusal && row.channel == channel; });
+RefusalTable::Row* RefusalTable::Find(std::string_view channel, const Refusal& refusal,
+                                      std::string_view text) {
+  const auto at = std::ranges::find_if(rows_, [&](const Row& row) {
+    return row.refusal == refusal && row.channel == channel && row.text == text;
+  });
   return at == rows_.end() ? nullptr : &*at;
 }
 
-void RefusalTable::Add(std::string_view channel, const Refusal& refusal, std::uint64_t count) {
-  if (Row* row = Find(channel, refusal)) {
+void RefusalTable::Add(std::string_view channel, const Refusal& refusal, std::uint64_t count,
+                       std::string_view text) {
+  if (Row* row = Find(channel, refusal, text)) {
     row->count += count;
     return;
   }
@@ -20,11 +23,15 @@ void RefusalTable::Add(std::string_view channel, const Refusal& refusal, std::ui
   if (is_unknown && channel != kOtherChannels && unknown_channels_ >= kMostUnknownChannels) {
     return Add(kOtherChannels, refusal, count);
   }
+  if (!text.empty() && text != kOtherChannels && names_ >= kMostNames) {
+    return Add(channel, refusal, count, kOtherChannels);
+  }
   if (rows_.size() >= kMostRows && !(channel.empty() && refusal.field.empty())) {
     return Add({}, refusal.reason, count);
   }
   if (is_unknown) ++unknown_channels_;
-  rows_.push_back({std::string(channel), refusal, count});
+  if (!text.empty()) ++names_;
+  rows_.push_back({std::string(channel), refusal, count, std::string(text)});
 }
 
 Refusal WithField(Refusal refusal, wire::InputKind kind) {

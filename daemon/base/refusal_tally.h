@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/base/reason.h"
@@ -12,23 +14,31 @@
 namespace v2vouch {
 
 /// How often each reason and field came up: detections left out of a scan, figures left unused.
-/// Bounded: fields are literals, and beyond kMost of them the field is no longer told apart.
+/// Bounded: fields are literals, and beyond kMost entries neither field nor text is told apart.
 class RefusalTally {
  public:
   struct Entry {
     Refusal refusal;
     std::uint64_t count = 0;
+    std::string text;  ///< What the field held, where that is a name; "" otherwise.
   };
   static constexpr std::size_t kMost = 64;
 
-  void Add(Refusal refusal, std::uint64_t count = 1) {
-    auto at = std::ranges::find(entries_, refusal, &Entry::refusal);
+  void Add(Refusal refusal, std::uint64_t count = 1) { AddNamed(refusal, {}, count); }
+  void AddNamed(Refusal refusal, std::string_view text, std::uint64_t count = 1) {
+    const auto find = [&] {
+      return std::ranges::find_if(entries_, [&](const Entry& entry) {
+        return entry.refusal == refusal && entry.text == text;
+      });
+    };
+    auto at = find();
     if (at == entries_.end() && entries_.size() >= kMost) {
       refusal.field = {};
-      at = std::ranges::find(entries_, refusal, &Entry::refusal);
+      text = {};
+      at = find();
     }
     if (at == entries_.end()) {
-      entries_.push_back({refusal, count});
+      entries_.push_back({refusal, count, std::string(text)});
     } else {
       at->count += count;
     }
@@ -42,9 +52,11 @@ class RefusalTally {
     for (const Entry& entry : entries_) sum += entry.refusal.reason == reason ? entry.count : 0;
     return sum;
   }
+  /// Of one reason and field, whatever the text.
   [[nodiscard]] std::uint64_t CountOf(const Refusal& refusal) const {
-    const auto at = std::ranges::find(entries_, refusal, &Entry::refusal);
-    return at == entries_.end() ? 0 : at->count;
+    std::uint64_t sum = 0;
+    for (const Entry& entry : entries_) sum += entry.refusal == refusal ? entry.count : 0;
+    return sum;
   }
 
  private:

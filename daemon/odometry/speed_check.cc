@@ -24,6 +24,12 @@ constexpr double kWorldCells = 24.0;
 constexpr double kWorldSide = 5.0;
 constexpr int kLeastCells = 3;      // Of one scan, to count at all.
 constexpr double kCreep_mps = 3.0;  // Wheel speeds that read 0 do so below 0.5 to 1.5 m/s.
+// Wheels do not stop faster [m/s^2]; a sensor that fails does.
+constexpr double kHardestStop_mps2 = 15.0;
+// A car whose sensor has always read 0 drives at any speed. Three vehicles that circle before it
+// give 25 to 75 cells, at most a quarter of them on one side; a street gives more, on both.
+constexpr double kDriveCells = 72.0;
+constexpr double kDriveSide = 0.25;
 constexpr double kReverse_mps = 6.0;
 constexpr double kMirrorShare = 0.05;
 constexpr double kLost_s = 1.0;
@@ -54,9 +60,18 @@ bool SpeedCheck::MayBeEgo(double speed_mps) const {
   return speed_mps > 0.0 || (gear_ != Gear::kForward && speed_mps >= -kCreep_mps);
 }
 
+// Below the deadband a car sets off from 0: a speed that was not there and is all at once is
+// somebody else's.
+bool SpeedCheck::MayDrive() const {
+  if (std::abs(other_began_) <= kCreep_mps) return true;
+  return !wheels_work_ && other_sum_.cells >= kDriveCells &&
+         std::min(other_sum_.left, other_sum_.right) >= kDriveSide * other_sum_.cells;
+}
+
 bool SpeedCheck::may_roll() const {
   return is_replaced_ ||
-         (IsWorld(other_sum_) && MayBeEgo(other_) && other_sum_.cells > used_sum_.cells);
+         (IsWorld(other_sum_) && MayBeEgo(other_) && other_sum_.cells > used_sum_.cells &&
+          (!is_still_ || std::abs(other_) <= kCreep_mps || MayDrive()));
 }
 
 bool SpeedCheck::is_seen_standing() const {
@@ -102,6 +117,12 @@ double SpeedCheck::Read(const EgoMotion& sample) {
   if (is_replaced_ && same_s_ == 0.0 && !is_still) {
     is_replaced_ = false;
     Forget();
+  }
+  const double lost = std::abs(told_) - std::abs(speed);
+  if (lost > kRolls_mps + kHardestStop_mps2 * std::max(dt_s, 0.02)) {
+    wheels_work_ = false;
+  } else if (std::abs(speed) > kRolls_mps) {
+    wheels_work_ = true;
   }
   sampled_ = sample.stamp;
   told_ = speed;
@@ -177,7 +198,7 @@ void SpeedCheck::Compare(Timestamp stamp, double dt_s, StandingWorld& world) {
       other_since_ = stamp;
       other_sum_ = {};
       other_ = strongest.speed_mps;
-      other_low_ = other_high_ = other_;
+      other_began_ = other_low_ = other_high_ = other_;
       told_low_ = told_high_ = told_;
       ratio_low_ = 1e9;
       ratio_high_ = -1e9;
@@ -232,6 +253,7 @@ void SpeedCheck::DecideStill(Timestamp stamp, double held_s) {
   double share = 1.5;
   double hold_s = is_creep ? 0.3 : 1.0;
   if (!IsWorld(other_sum_) || !MayBeEgo(other_)) return;
+  if (!is_creep && !MayDrive()) return;
   if (other_ < 0.0) {
     share = gear_ == Gear::kReverse ? 2.0 : 3.0;
     if (gear_ != Gear::kReverse) hold_s = 1.5;

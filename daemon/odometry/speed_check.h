@@ -24,6 +24,10 @@ enum class SpeedCorrection {
 /// - The world stands on both sides of the ego's path. A column beside a standing ego is on one.
 /// - Lanes of one direction on both sides of a standing ego look like an ego that rolls backwards,
 ///   which a car in forward gear does not.
+/// - A car sets off from 0: while the wheels read 0, a speed above 3 m/s must have begun below
+/// that.
+///   Vehicles on a roundabout before a standing ego show one from the first moment on. A sensor
+///   that has always read 0, or fell to it at once, needs a street on both sides.
 /// - Buildings, posts and parked cars go on agreeing with a speed that is right. A correction needs
 ///   several times as many grid cells as the reported speed has.
 /// - Wheel speed that is not 0 is believed, unless its fault is of a known kind: the sign (up to
@@ -84,6 +88,7 @@ class SpeedCheck {
   void DecideStill(Timestamp stamp, double held_s);
   void DecideRolling(Timestamp stamp, double held_s);
   [[nodiscard]] bool MayBeEgo(double speed_mps) const;
+  [[nodiscard]] bool MayDrive() const;
   void LearnScale(double dt_s, StandingWorld& world);
   void Replace(Timestamp stamp, bool is_frozen);
   void Forget();
@@ -93,6 +98,7 @@ class SpeedCheck {
   double told_ = 0.0;
   double smooth_ = 0.0;
   bool is_still_ = false;
+  bool wheels_work_ = false;  // They have read another speed than 0, and came to 0 as a car does.
   Gear gear_ = Gear::kUnknown;
   double still_s_ = 0.0;
   double same_s_ = 0.0;  // How long the figure has been the same to the bit.
@@ -112,7 +118,8 @@ class SpeedCheck {
   std::optional<Timestamp> misread_since_;
   Sum used_sum_, other_sum_;
   double other_ = 0.0;
-  double rival_ = 0.0;  // Cells of a third speed beyond the other's.
+  double other_began_ = 0.0;  // Its first figure.
+  double rival_ = 0.0;        // Cells of a third speed beyond the other's.
   Timestamp other_since_{};
   double other_low_ = 0.0, other_high_ = 0.0;  // Its range while the reported one was the same.
   double told_low_ = 0.0, told_high_ = 0.0;    // Range of the reported one since then,

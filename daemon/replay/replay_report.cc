@@ -75,7 +75,7 @@ std::string JsonReport(const ReplayResult& result) {
   for (const RefusalTable::Row& row : result.refusal_details) {
     details.push_back({{"channel", row.channel},
                        {"reason", ReasonName(row.refusal.reason)},
-                       {"field", row.refusal.field},
+                       {"field", row.FieldText()},
                        {"count", row.count}});
   }
   const nlohmann::ordered_json report = {
@@ -128,8 +128,7 @@ std::string TextReport(const ReplayResult& result) {
                       static_cast<std::int64_t>(result.refused[i]));
     for (const RefusalTable::Row& row : result.refusal_details) {
       if (row.refusal.reason != static_cast<Reason>(i)) continue;
-      const std::string field =
-          row.refusal.field.empty() ? "message" : std::string(row.refusal.field);
+      const std::string field = row.refusal.field.empty() ? "message" : row.FieldText();
       text += CountLine("  " + (row.channel.empty() ? "(others)" : row.channel) + " " + field,
                         static_cast<std::int64_t>(row.count));
     }

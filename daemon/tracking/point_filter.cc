@@ -6,6 +6,7 @@
 
 #include "daemon/base/angle.h"
 #include "daemon/models/dual.h"
+#include "daemon/models/extent.h"
 #include "daemon/models/kalman.h"
 
 namespace v2vouch {
@@ -123,7 +124,13 @@ std::optional<PointModel> LinearizePoint(const Eigen::Vector4d& x, const CameraL
   out.y[0] = WrapAngle(middle - bearing.value);
   out.H.row(0) = bearing.gradient;
   const double across = is_exact ? 0.0 : kPointAcrossSigma_m / range;
-  out.R(0, 0) = 0.5 * z.azimuth_sigma_rad * z.azimuth_sigma_rad + across * across;
+  // A box narrower than what it is called shows a part of it: the middle of the rest lies anywhere
+  // from one end of what is missing to the other.
+  const double width_rad = z.azimuth_left_rad - z.azimuth_right_rad;
+  const double whole_rad = ClassExtent(z.object_class).width_m / std::max(range, 1.0);
+  const double missing = is_exact ? 0.0 : 0.5 * std::max(0.0, whole_rad - width_rad);
+  out.R(0, 0) =
+      0.5 * z.azimuth_sigma_rad * z.azimuth_sigma_rad + across * across + missing * missing;
   if (rows == 2) {
     const D depression = atan2(D(look.camera.z_m * std::cos(middle)), qx);
     const double radial = is_exact ? 0.0 : depression.value * 2.0 * kPointRadialSigma_m / qx.value;

@@ -22,6 +22,10 @@ constexpr double kOddBox = 9.0;
 const double kOddSizeCost = 2.0 * std::log(20.0);
 constexpr int kOddBoxes = 2;
 constexpr int kOddSpans = 3;
+// A cluster that is too wide may hold a part of the vehicle beside, which radars do not tell apart
+// well: such clusters must come more often than every fourth time. One that is too deep holds no
+// vehicle behind, which would be covered.
+constexpr int kOddSpanWeight = 3;
 // Clusters of a vehicle of which less is visible do not measure its size: what covers it may have
 // given them a reflection.
 constexpr double kSpanShare = 0.9;
@@ -100,25 +104,29 @@ bool UpdateState(const Look& look, const Measurement& z, bool is_young,
   return true;
 }
 
-// What the spread of the cluster says about the size. @return false: it is too wide for this one.
-bool LearnSpan(const RadarLook& look, const RadarMeasurement& z, ObjectClass object_class,
+enum class Span { kFits, kTooWide, kTooDeep };
+
+// What the spread of the cluster says about the size.
+Span LearnSpan(const RadarLook& look, const RadarMeasurement& z, ObjectClass object_class,
                const FilterSettings& settings, ExtendedState& state) {
-  if (settings.point_targets || z.visible_share < kSpanShare) return true;
+  if (settings.point_targets || z.visible_share < kSpanShare) return Span::kFits;
   const auto span = LinearizeSpan(state, look.ego, look.radar, z);
-  if (!span) return true;
+  if (!span) return Span::kFits;
   const auto likelihood = EvaluateExtended(*span, state);
-  if (!likelihood || likelihood->distance_squared >= kSpanGate) return false;
+  if (!likelihood || likelihood->distance_squared >= kSpanGate) {
+    return span->y[0] > 0.0 ? Span::kTooDeep : Span::kTooWide;
+  }
   ExtendedState grown = state;
-  if (!UpdateExtended(*span, grown)) return true;
+  if (!UpdateExtended(*span, grown)) return Span::kFits;
   // A span bounds the length from below. Lorries show their far end last, so that it must not make
   // their length certain.
   if (IsLong(object_class)) grown.covariance = state.covariance;
   state = grown;
-  return true;
+  return Span::kFits;
 }
-bool LearnSpan(const CameraLook&, const CameraMeasurement&, ObjectClass, const FilterSettings&,
+Span LearnSpan(const CameraLook&, const CameraMeasurement&, ObjectClass, const FilterSettings&,
                ExtendedState&) {
-  return true;
+  return Span::kFits;
 }
 
 // Whether a box is wider than this vehicle would show itself.
@@ -222,6 +230,7 @@ VehicleFilter& VehicleFilter::operator=(const VehicleFilter& other) {
   is_size_open_ = other.is_size_open_;
   odd_boxes_ = other.odd_boxes_;
   odd_spans_ = other.odd_spans_;
+  is_deep_ = other.is_deep_;
   return *this;
 }
 
@@ -314,6 +323,7 @@ void VehicleFilter::Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O) {
   }
   is_size_open_ = true;
   odd_boxes_ = odd_spans_ = 0;
+  is_deep_ = false;
 }
 
 template <class Look, class Measurement>
@@ -328,7 +338,7 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, ObjectClass o
   }
   std::array<double, kMostAxes> fit{};
   std::size_t kept = 0;
-  bool fits = false;
+  Span best_fit = Span::kTooDeep;
   for (std::size_t i = 0; i < count_; ++i) {
     Component& component = components_[i];
     double log_likelihood = 0.0;
@@ -340,14 +350,20 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, ObjectClass o
       log_likelihood = -0.5 * (likelihood->distance_squared + likelihood->log_det);
     }
     if (!UpdateState(look, z, is_young, settings, component.state)) continue;
-    fits = LearnSpan(look, z, object_class, settings, component.state) || fits;
+    best_fit = std::min(best_fit, LearnSpan(look, z, object_class, settings, component.state));
     fit[kept] = log_likelihood;
     if (kept != i) components_[kept] = component;
     ++kept;
   }
   if (kept == 0) return false;
   count_ = kept;
-  if (!fits && ++odd_spans_ >= kOddSpans) Reopen(true, look.origin_O());
+  if (best_fit != Span::kFits) {
+    odd_spans_ += kOddSpanWeight;
+  } else if (!is_deep_) {
+    odd_spans_ = std::max(0, odd_spans_ - 1);
+  }
+  is_deep_ = is_deep_ || best_fit == Span::kTooDeep;
+  if (odd_spans_ >= kOddSpans * kOddSpanWeight) Reopen(true, look.origin_O());
   if (count_ > 1) Weigh(std::span(fit).first(count_));
   TurnRound();
   return true;

@@ -99,8 +99,9 @@ class VehicleFilter {
   std::size_t count_ = 0;
   bool has_driven_ = false;  // Seen in motion: front and rear are told apart.
   bool is_size_open_ = false;
-  int odd_boxes_ = 0;  // In a row that fit another size.
-  int odd_spans_ = 0;  // Clusters too wide for it, since the last one that was not.
+  int odd_boxes_ = 0;     // In a row that fit another size.
+  int odd_spans_ = 0;     // Clusters too wide for it, three each, less those that were not.
+  bool is_deep_ = false;  // One of them was too deep: none is taken off.
 };
 
 /// A vehicle whose reflecting point is known and whose direction is `yaw_rad`, given (with

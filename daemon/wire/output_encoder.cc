@@ -235,7 +235,7 @@ void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes) {
     refusal_t detail{};
     detail.channel = Name(from.channel);
     detail.reason = Name(ReasonName(from.refusal.reason));
-    detail.field = Name(from.refusal.field);
+    detail.field = Name(from.FieldText());
     detail.count = static_cast<std::int64_t>(from.count);
     to.refusal_details.push_back(detail);
   }

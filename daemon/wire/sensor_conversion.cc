@@ -3,14 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <optional>
-#include <string>
-#include <utility>
 
 #include "daemon/base/angle.h"
-#include "daemon/data/object_class.h"
+#include "daemon/wire/class_names.h"
 #include "daemon/wire/field_judge.h"
 
 namespace v2vouch::wire {
@@ -57,12 +54,6 @@ void JudgeSensor(const std::string& name, const std::string& configured, FieldJu
 bool LooksLikeDegrees(double angle) {
   return std::abs(angle) > kTurn_rad && std::abs(angle) <= 360.0;
 }
-
-// What detectors trained on COCO call them.
-constexpr std::pair<std::string_view, ObjectClass> kOtherNames[] = {
-    {"motorbike", ObjectClass::kMotorcycle},
-    {"person", ObjectClass::kPedestrian},
-    {"bicycle", ObjectClass::kCyclist}};
 
 // A box without a score, or with 0, was published all the same: its detector is sure enough.
 double Score(double score, FieldJudge& judge) {
@@ -121,16 +112,6 @@ std::optional<Eigen::Matrix3d> Covariance(const double (&raw)[9], FieldJudge& ju
 }
 
 }  // namespace
-
-ObjectClass ClassOfName(std::string_view name) {
-  std::string lower(name);
-  std::ranges::transform(lower, lower.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const auto& [known, object_class] : kOtherNames) {
-    if (known == lower) return object_class;
-  }
-  return ObjectClassOf(lower).value_or(ObjectClass::kUnknown);
-}
 
 Result<RadarScan> FromWire(const radar_scan_t& message, const RadarConfig& radar, int index,
                            Timestamp received, RefusalTally& dropped) {
@@ -202,12 +183,19 @@ Result<CameraDetections> FromWire(const camera_detections_t& message, const Came
       dropped.Add(*each.refusal());
       continue;
     }
+    const NamedClass named = MeaningOf(from.class_name);
+    if (!named.is_known || !named.is_road_user) {
+      dropped.AddNamed(
+          {named.is_road_user ? Reason::kFieldUnused : Reason::kOutOfRange, "boxes.class_name"},
+          Printable(from.class_name));
+      if (!named.is_road_user) continue;
+    }
     detections.boxes.push_back({
         .left_px = from.left_px,
         .top_px = from.top_px,
         .width_px = from.width_px,
         .height_px = from.height_px,
-        .object_class = ClassOfName(from.class_name),
+        .object_class = named.object_class,
         .score = Score(from.score, each),
     });
   }

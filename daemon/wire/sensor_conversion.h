@@ -34,8 +34,4 @@ Result<EgoMotion> FromWire(const ego_motion_t& message, const VehicleConfig& veh
 Result<GnssFix> FromWire(const gnss_fix_t& message, const VehicleConfig& vehicle,
                          Timestamp received, RefusalTally& unused);
 
-/// kUnknown for a name we do not know; upper case and COCO's names for the same things are taken
-/// too.
-ObjectClass ClassOfName(std::string_view name);
-
 }  // namespace v2vouch::wire

@@ -26,6 +26,13 @@ struct RefusalDetail {
   std::string channel;
   Refusal refusal;
   std::uint64_t count = 0;
+  std::string text;  ///< What the field held, where that is a name.
+
+  /// The field as published: "boxes.class_name 'forklift'".
+  [[nodiscard]] std::string FieldText() const {
+    std::string field(refusal.field);
+    return text.empty() ? field : field + " '" + text + "'";
+  }
 };
 
 struct MountStatus {

@@ -54,6 +54,16 @@ TEST(RefusalTable, StaysBoundedWhateverComes) {
   EXPECT_EQ(named, RefusalTable::kMostUnknownChannels + 1);  // And the others together.
 }
 
+TEST(RefusalTable, NamesInAFieldAreToldApartUpToABound) {
+  RefusalTable table;
+  const Refusal refusal{Reason::kFieldUnused, "boxes.class_name"};
+  for (int i = 0; i < 100; ++i) table.Add("CAMERA_FRONT", refusal, 2, "n" + std::to_string(i));
+  ASSERT_EQ(table.rows().size(), RefusalTable::kMostNames + 1);
+  EXPECT_EQ(table.rows()[0].FieldText(), "boxes.class_name 'n0'");
+  EXPECT_EQ(table.rows().back().FieldText(), "boxes.class_name '(others)'");
+  EXPECT_EQ(table.rows().back().count, 2 * (100 - RefusalTable::kMostNames));
+}
+
 std::vector<WireMessage> Messages() {
   testing::SyntheticDrive drive;
   drive.duration_s = 2.0;

@@ -155,6 +155,56 @@ TEST(EgoReading, ATrafficJamThatMovesAroundAStandingEgoIsNotTheEgosMotion) {
   }
 }
 
+// A roundabout or a junction: what comes towards a standing ego on both sides of its axis looks
+// like a world that it drives into, but has that speed from the first moment on.
+TEST(EgoReading, WhatComesTowardsACarThatHasStoppedIsNotItsMotion) {
+  for (const double speed : {4.0, 7.0, 11.0}) {
+    for (const double every_m : {9.0, 20.0, 40.0}) {
+      for (const Gear gear : {Gear::kForward, Gear::kNeutral, Gear::kUnknown}) {
+        Drive drive;
+        const auto stops = [&](double t) {
+          const double v = std::max(0.0, 7.0 - 2.5 * t);
+          return Truth{v, v, gear};
+        };
+        drive.Play(4.0, 0.0, stops, [](double) { return Scene{}; });
+        const Scene oncoming = Lane(5.0, -speed, every_m) + Lane(-5.0, -speed, every_m);
+        EXPECT_EQ(drive.Play(
+                      20.0, 0.0,
+                      [&](double) {
+                        return Truth{0.0, 0.0, gear};
+                      },
+                      [&](double) { return oncoming; }),
+                  1.0)
+            << speed << " m/s, every " << every_m << " m, gear " << static_cast<int>(gear);
+        EXPECT_EQ(drive.reading.speed().correction(), SpeedCorrection::kNone);
+      }
+    }
+  }
+}
+
+TEST(EgoReading, ASensorThatFailsOnTheRoadOrNeverSpokeIsReplaced) {
+  for (const double speed : {5.0, 9.0, 14.0, 30.0}) {
+    Drive never;
+    EXPECT_GT(never.Play(
+                  6.0, 2.0,
+                  [&](double) {
+                    return Truth{speed, 0.0};
+                  },
+                  [](double) { return Street(); }),
+              0.95)
+        << speed;
+    Drive fails;
+    EXPECT_GT(fails.Play(
+                  8.0, 4.5,
+                  [&](double t) {
+                    return Truth{speed, t < 2.0 ? speed : 0.0};
+                  },
+                  [](double) { return Street(); }),
+              0.95)
+        << speed;
+  }
+}
+
 TEST(EgoReading, TrafficAtOneSpeedAroundARollingEgoDoesNotOutvoteItsWheels) {
   for (const double traffic : {-15.0, 5.0, 12.0, 14.0, 16.0, 18.0, 28.0}) {
     Drive drive;

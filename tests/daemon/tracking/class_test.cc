@@ -160,5 +160,53 @@ TEST(ClassName, AWrongNameNeitherEndsATrackNorPinsItsSize) {
   }
 }
 
+// Every fifth cluster holds a part of the vehicle in the next lane. The size is not forgotten for
+// it, and the face that is seen stays where it is: rear, front and side.
+TEST(ClassName, ClustersThatHoldAPartOfTheNextVehicleMoveNoFace) {
+  const Car cars[] = {
+      {.p_W = {25.0, 0.0}, .speed_mps = 5.0},
+      {.p_W = {60.0, 0.0}, .yaw_rad = kPi, .speed_mps = 5.0},
+      {.p_W = {25.0, 8.0}, .yaw_rad = -0.5 * kPi, .speed_mps = 3.0},
+  };
+  for (const Car& car : cars) {
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+      Scene scene(seed);
+      scene.cars.push_back(car);
+      scene.ego.speed_mps = car.yaw_rad == 0.0 ? 5.0 : 0.0;
+      Tracker tracker(TrackerConfig{}, scene.vehicle);
+      for (int step = 0; step < 100; ++step) {
+        scene.Advance(0.05);
+        auto scan = scene.Scan(0);
+        if (step % 5 == 4) {
+          for (RadarMeasurement& z : scan) {
+            z.azimuth_max_rad += FromDegrees(7.0);
+            z.azimuth_rad += FromDegrees(1.0);
+            z.returns += 2;
+          }
+        }
+        tracker.Predict(scene.now());
+        tracker.UpdateRadar(0, scene.ego_state(), scan, [&](const LocalTrack& track) {
+          return scene.Answer(track, 0.95, scene.vehicle.radars[0].half_fov_rad, {0.0, 0.0});
+        });
+        if (step % 2 == 1) scene.Camera(tracker);
+      }
+      const LocalTrack* track = Scene::Find(tracker, scene.cars[0]);
+      ASSERT_NE(track, nullptr) << car.yaw_rad << ", seed " << seed;
+      const Eigen::Vector2d forward(std::cos(car.yaw_rad), std::sin(car.yaw_rad));
+      const Eigen::Vector2d off = track->state_O.mean.head<2>() - scene.cars[0].p_W;
+      // Of the end that is nearer to the ego.
+      const double face_m = off.dot(forward) - 0.5 * (track->extent.length_m - car.length_m);
+      if (std::abs(std::sin(car.yaw_rad)) < 0.5) {
+        const double seen_m =
+            car.yaw_rad == 0.0 ? face_m : off.dot(forward) + 0.5 * (track->extent.length_m - 4.5);
+        EXPECT_LT(std::abs(seen_m), 0.4) << car.yaw_rad << ", seed " << seed;
+      } else {
+        EXPECT_LT(off.norm(), 0.6) << "side, seed " << seed;
+      }
+      EXPECT_LT(track->extent.length_sigma_m, 1.0) << car.yaw_rad << ", seed " << seed;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace v2vouch

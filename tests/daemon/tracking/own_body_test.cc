@@ -155,5 +155,80 @@ TEST(OwnBody, TheCarThatStandsAMetreBeforeTheBumperStays) {
   }
 }
 
+// Front and rear corners, as (x, y, yaw) of the antenna from the footprint's centre.
+struct Corner {
+  double x_m;
+  double y_m;
+  double yaw_deg;
+};
+constexpr Corner kCorners[] = {
+    {2.05, 0.8, 55.0}, {2.05, -0.8, -55.0}, {-2.1, 0.8, 125.0}, {-2.1, -0.8, -125.0}};
+
+void Mount(Scene& scene, const Corner& corner) {
+  RadarConfig& radar = scene.vehicle.radars[0];
+  radar.x_m = scene.vehicle.centre_x_m + corner.x_m;
+  radar.y_m = corner.y_m;
+  radar.yaw_rad = FromDegrees(corner.yaw_deg);
+  radar.half_fov_rad = FromDegrees(75.0);
+}
+
+TEST(OwnBody, WaterOnACornerRadarsRadomeIsNoVehicle) {
+  for (const Corner& corner : kCorners) {
+    for (const double range_m : {0.3, 0.7, 1.2, 1.7}) {
+      for (const double azimuth_deg : {-70.0, -30.0, 0.0, 30.0, 70.0}) {
+        for (const double rate_sigma_mps : {0.05, 2.0}) {
+          Scene scene(6);
+          scene.ego.speed_mps = 9.0;
+          Mount(scene, corner);
+          const Drive drive = RunDrive(scene,
+                                       {.range_m = range_m,
+                                        .azimuth_rad = FromDegrees(azimuth_deg),
+                                        .rate_sigma_mps = rate_sigma_mps},
+                                       true, 4.0);
+          EXPECT_LE(drive.false_tracks, 0.02 * drive.lists)
+              << corner.yaw_deg << " deg, " << range_m << " m at " << azimuth_deg;
+        }
+      }
+    }
+  }
+}
+
+// The bumper's edge, the mirror, a wheel: along the own flank.
+TEST(OwnBody, WhatACornerRadarSeesOfTheOwnFlankIsNoVehicle) {
+  for (const Corner& corner : kCorners) {
+    const double back_deg = corner.x_m > 0.0 ? 180.0 : 0.0;  // Towards the other end of the car.
+    for (const double range_m : {0.5, 1.5, 2.5, 3.5}) {
+      Scene scene(7);
+      scene.ego.speed_mps = 9.0;
+      Mount(scene, corner);
+      const Drive drive =
+          RunDrive(scene,
+                   {.range_m = range_m,
+                    .azimuth_rad = WrapAngle(FromDegrees(back_deg - corner.yaw_deg)),
+                    .range_sigma_m = 0.02,
+                    .azimuth_sigma_rad = 0.02},
+                   true, 4.0, [&](double t_s) { scene.ego.accel_mps2 = std::sin(t_s); });
+      EXPECT_EQ(drive.false_tracks, 0) << corner.yaw_deg << " deg, " << range_m << " m";
+    }
+  }
+}
+
+// A car that overtakes a metre beside the flank comes from elsewhere.
+TEST(OwnBody, ACarThatOvertakesCloseByStaysListed) {
+  for (const Corner& corner : kCorners) {
+    if (corner.x_m > 0.0) continue;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      Scene scene(seed);
+      scene.ego.speed_mps = 9.0;
+      Mount(scene, corner);
+      const double side = corner.y_m > 0.0 ? 1.0 : -1.0;
+      scene.cars.push_back({.p_W = {-25.0, side * 3.0}, .speed_mps = 14.0});
+      const Drive drive = RunDrive(scene, {.range_m = 0.0}, false, 5.0);
+      EXPECT_LE(drive.lead_missing, 5) << corner.yaw_deg << ", seed " << seed;
+      EXPECT_LE(drive.false_tracks, 5) << corner.yaw_deg << ", seed " << seed;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace v2vouch

@@ -91,6 +91,23 @@ TEST(RadarFromWire, OneBadDetectionIsLeftOutAndCounted) {
   EXPECT_EQ(CountOf(dropped, Reason::kOutOfRange), 4u);
 }
 
+// A corner radar's range offset may take what is on its radome behind the antenna.
+TEST(RadarFromWire, RangesThatAreNoneCostThemselvesAlone) {
+  RadarConfig radar;
+  radar.name = "FRONT";
+  radar.range_offset_m = -0.5;
+  radar_scan_t message = Scan();
+  for (const double range_m : {0.5, 0.3, 0.0, -0.2, 1e-12, 0.51}) {
+    message.detections.push_back({range_m, 1.2, 0.0, 0.0, 0.0, -1});
+  }
+  message.num_detections = static_cast<std::int32_t>(message.detections.size());
+  RefusalTally dropped;
+  const auto scan = FromWire(message, radar, 0, {}, dropped);
+  ASSERT_TRUE(scan);
+  EXPECT_EQ(scan->detections.size(), 2u);
+  EXPECT_EQ(dropped.CountOf({Reason::kOutOfRange, "detections.range_m"}), 5u);
+}
+
 TEST(RadarFromWire, WrongSensorAndImpossibleStampsAreRefused) {
   RefusalTally dropped;
   radar_scan_t message = Scan();
