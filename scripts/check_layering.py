@@ -28,6 +28,8 @@ LIBRARIES = {
     "json": r"nlohmann/.*",
     "geographic": r"GeographicLib/.*",
     "zlib": r"zlib\.h",
+    "openssl": r"openssl/.*",
+    "pcap": r"pcap/.*|pcap\.h",
     "ceres": r"(ceres|glog)/.*",
     "opencv": r"opencv2/.*",
     "files": r"fstream|filesystem|iostream",
