@@ -71,7 +71,6 @@ std::int64_t PositionTime(const Cam& cam, std::int64_t near_utime) {
 BsmCore CoreOfCam(const Cam& cam, std::optional<std::int64_t> near_utime) {
   BsmCore core;
   core.id = cam.station_id;
-  core.msg_count = cam.generation_delta_time / 100 % 128;
   if (near_utime) {
     core.sec_mark = static_cast<std::int32_t>(PositionTime(cam, *near_utime) / 1000 % 60000);
   }

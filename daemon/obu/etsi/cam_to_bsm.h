@@ -20,8 +20,7 @@ namespace v2vouch::obu {
 ///   here.
 /// - secMark is the time of the position: generationDeltaTime, unwrapped round `near_utime`;
 ///   unavailable without.
-/// - msgCnt, which a CAM has not, follows the time of the position in steps of 100 ms, the shortest
-///   interval of CAMs: copies of one CAM get the same.
+/// - msgCnt, which a CAM has not, is 0 here; CamCounts of obu/message counts.
 ///
 /// @param near_utime reception, or the envelope's time of generation, us UTC.
 BsmCore CoreOfCam(const Cam& cam, std::optional<std::int64_t> near_utime);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "daemon/obu/framing/peeler.h"
+#include "daemon/obu/framing/text.h"
 
 namespace v2vouch::obu {
 namespace {

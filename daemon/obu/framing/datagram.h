@@ -9,10 +9,10 @@
 #include "daemon/obu/framing/device.h"
 #include "daemon/obu/framing/layer.h"
 #include "daemon/obu/framing/link.h"
-#include "daemon/obu/framing/text.h"
 #include "daemon/obu/ieee1609/dot2.h"
 #include "daemon/obu/ieee1609/wsmp.h"
 #include "daemon/obu/j2735/message_frame.h"
+#include "daemon/obu/octets/hex_text.h"
 
 namespace v2vouch::obu {
 

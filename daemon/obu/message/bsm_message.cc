@@ -41,6 +41,24 @@ void SetCore(const BsmCore& core, bsm_t& message) {
 
 }  // namespace
 
+int CamCounts::CountOf(const Cam& cam) {
+  auto [found, is_new] = stations_.try_emplace(cam.station_id);
+  Station& station = found->second;
+  if (!is_new) by_age_.erase(station.heard);
+  station.heard = ++heard_;
+  by_age_[station.heard] = cam.station_id;
+  if (station.delta_time != cam.generation_delta_time) {
+    if (!is_new) station.count = (station.count + 1) % 128;
+    station.delta_time = cam.generation_delta_time;
+  }
+  const int count = station.count;
+  if (stations_.size() > kMostStations) {
+    stations_.erase(by_age_.begin()->second);
+    by_age_.erase(by_age_.begin());
+  }
+  return count;
+}
+
 bsm_t BsmMessage(const Datagram& datagram, const Reception& reception) {
   bsm_t message{};
   message.rx_utime = reception.rx_utime;
@@ -52,7 +70,10 @@ bsm_t BsmMessage(const Datagram& datagram, const Reception& reception) {
     if (message.generation_utime != 0) time = message.generation_utime;
   }
   if (datagram.bsm) SetCore(datagram.bsm->core, message);
-  if (!datagram.bsm && datagram.cam) SetCore(CoreOfCam(*datagram.cam, time), message);
+  if (!datagram.bsm && datagram.cam) {
+    SetCore(CoreOfCam(*datagram.cam, time), message);
+    message.msgCnt = static_cast<std::int16_t>(reception.cam_count);
+  }
   message.signature_state = reception.signature_state;
   std::copy(reception.digest.begin(), reception.digest.end(), message.certificate_digest);
   const auto rssi = datagram.rssi_dbm();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/obu/framing/text.h"
+#include "daemon/obu/octets/hex_text.h"
 #include "tests/support/obu_wrap.h"
 
 namespace v2vouch::obu {
