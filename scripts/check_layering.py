@@ -28,10 +28,11 @@ LIBRARIES = {
     "json": r"nlohmann/.*",
     "geographic": r"GeographicLib/.*",
     "zlib": r"zlib\.h",
+    "openssl": r"openssl/.*",
+    "pcap": r"pcap/.*|pcap\.h",
     "ceres": r"(ceres|glog)/.*",
     "opencv": r"opencv2/.*",
     "files": r"fstream|filesystem|iostream",
-    "cpu": r"cpuid\.h|immintrin\.h",
     "threads": r"thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|pthread\.h",
     "system": r"(sys|netinet|arpa|net|linux)/.*|unistd\.h|fcntl\.h|poll\.h|dirent\.h|spawn\.h"
               r"|signal\.h|csignal|netdb\.h|ifaddrs\.h|dlfcn\.h",

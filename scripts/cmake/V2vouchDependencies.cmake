@@ -6,6 +6,7 @@ find_package(CLI11 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
 find_package(Ceres REQUIRED)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
@@ -13,6 +14,7 @@ find_package(benchmark REQUIRED)
 # LCM 1.3.1 as packaged has no CMake package; later versions do, but theirs needs FindGLib2.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
+pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
 find_program(LCM_GEN lcm-gen REQUIRED)
 
 # GeographicLib's own find module sits in a folder CMake does not search by itself.

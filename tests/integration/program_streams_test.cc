@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 const char* const kPrograms[] = {
-    "v2vouchd",         "v2vouch-replay",       "v2vouch-sim",    "v2vouch-eval",
-    "v2vouch-campaign", "v2vouch-calibrate",    "v2vouch-import", "v2vouch-detect",
-    "v2vouch-annotate", "v2vouch-bench-tracker"};
+    "v2vouchd",         "v2vouch-replay",        "v2vouch-sim",    "v2vouch-eval",
+    "v2vouch-campaign", "v2vouch-calibrate",     "v2vouch-import", "v2vouch-detect",
+    "v2vouch-annotate", "v2vouch-bench-tracker", "v2vouch-obu"};
 
 class Programs : public ::testing::Test {
  protected:

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "daemon/obu/octets/byte_reader.h"
+
+namespace v2vouch::obu {
+
+/// Longest datagram looked at: a message and its envelopes stay under 1500 bytes.
+inline constexpr std::size_t kLongestDatagram = 2304;
+
+/// Hex digits in either case, blanks and line breaks anywhere between bytes, "0x" at the front.
+/// @return the bytes, in `scratch`; kBadText for anything else.
+Fault ReadHex(std::string_view text, std::span<std::uint8_t> scratch, Bytes& bytes);
+
+}  // namespace v2vouch::obu
