@@ -49,8 +49,8 @@ class TableError(Exception):
 
 
 def read_table(text):
-    """Returns {room: set of words}, groups resolved."""
-    groups, rooms = {}, {}
+    """Returns {room: set of words}, groups resolved; walls and circles are checked."""
+    groups, rooms, walls = {}, {}, []
 
     def resolve(words, where):
         resolved = set()
@@ -72,6 +72,10 @@ def read_table(text):
             name, _, words = line[len("group "):].partition("=")
             groups[name.strip()] = resolve(words.split(), where)
             continue
+        if line.startswith("wall "):
+            folder, _, others = line[len("wall "):].partition(":")
+            walls.append((folder.strip(), others.split()))
+            continue
         room, colon, words = line.partition(":")
         room = room.strip()
         if not colon or not room:
@@ -84,10 +88,34 @@ def read_table(text):
         for word in words:
             if "/" in word and word not in rooms:
                 raise TableError(f"{room} names the room {word}, which has no line of its own")
-    circle = find_circle(rooms)
+    check_walls(rooms, walls)
+    circle = find_circle(rooms) or find_circle(top_folders(rooms))
     if circle:
         raise TableError("arrows form a circle: " + " -> ".join(circle))
     return rooms
+
+
+def check_walls(rooms, walls):
+    """No room of a walled folder may name a room outside it and the folders it may use."""
+    for folder, others in walls:
+        inside = [room for room in rooms if room.startswith(folder + "/")]
+        if not inside:
+            raise TableError(f"wall {folder}: there is no such folder of rooms")
+        allowed = tuple(name + "/" for name in [folder] + others)
+        for room in inside:
+            for word in sorted(rooms[room]):
+                if "/" in word and not word.startswith(allowed):
+                    raise TableError(f"wall {folder}: {room} reaches {word}")
+
+
+def top_folders(rooms):
+    """The same arrows between top-level folders."""
+    tops = {}
+    for room, words in rooms.items():
+        top = room.split("/", 1)[0]
+        reached = {word.split("/", 1)[0] for word in words if "/" in word}
+        tops.setdefault(top, set()).update(reached - {top})
+    return tops
 
 
 def find_circle(rooms):

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "daemon/data/vehicle.h"
+#include "daemon/common/data/vehicle.h"
 
 namespace v2vouch {
 

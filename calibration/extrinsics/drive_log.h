@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "daemon/data/input.h"
+#include "daemon/common/data/input.h"
 
 namespace v2vouch {
 

@@ -14,7 +14,7 @@
 #include "calibration/extrinsics/mounting_parameters.h"
 #include "calibration/extrinsics/static_doppler.h"
 #include "calibration/extrinsics/target_windows.h"
-#include "daemon/data/vehicle.h"
+#include "daemon/common/data/vehicle.h"
 
 namespace v2vouch {
 

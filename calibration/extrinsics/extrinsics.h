@@ -12,8 +12,8 @@
 #include "calibration/extrinsics/drive_problem.h"
 #include "calibration/extrinsics/mounting_parameters.h"
 #include "calibration/extrinsics/residual_pictures.h"
-#include "daemon/data/calibration.h"
-#include "daemon/data/vehicle.h"
+#include "daemon/common/data/calibration.h"
+#include "daemon/common/data/vehicle.h"
 
 namespace v2vouch {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/data/vehicle.h"
+#include "daemon/common/data/vehicle.h"
 
 namespace v2vouch {
 

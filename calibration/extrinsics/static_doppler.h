@@ -8,7 +8,7 @@
 #include "calibration/extrinsics/drive_log.h"
 #include "calibration/extrinsics/ego_track.h"
 #include "calibration/extrinsics/mounting_parameters.h"
-#include "daemon/data/vehicle.h"
+#include "daemon/common/data/vehicle.h"
 
 namespace v2vouch {
 

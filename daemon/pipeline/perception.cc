@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "daemon/models/ctra.h"
+#include "daemon/common/models/ctra.h"
 #include "daemon/pipeline/source_clock.h"
 #include "daemon/pipeline/timeline.h"
-#include "daemon/v2v_perception/sender_list.h"
+#include "daemon/v2v/perception/sender_list.h"
 
 namespace v2vouch {
 namespace {

@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "daemon/base/notice.h"
-#include "daemon/data/bias.h"
-#include "daemon/data/input.h"
-#include "daemon/data/outputs.h"
+#include "daemon/common/base/notice.h"
+#include "daemon/common/data/bias.h"
+#include "daemon/common/data/input.h"
+#include "daemon/common/data/outputs.h"
 #include "daemon/pipeline/perception_config.h"
-#include "daemon/trust/trust_memory.h"
+#include "daemon/v2v/trust/trust_memory.h"
 
 namespace v2vouch {
 
@@ -49,7 +49,7 @@ class Perception {
   [[nodiscard]] bool ego_gnss_suspect() const;
   /// The newest settled GPS bias estimates.
   [[nodiscard]] const BiasReport& bias_report() const;
-  /// Adds the conditions that hold now (daemon/base/notice.h).
+  /// Adds the conditions that hold now (daemon/common/base/notice.h).
   void CollectNotices(std::vector<Notice>& notices) const;
   /// Whether each configured sensor has spoken within three of its periods; radars, then cameras.
   [[nodiscard]] bool IsRadarAlive(int radar) const;

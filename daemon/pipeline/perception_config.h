@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "daemon/alignment/alignment.h"
-#include "daemon/base/visit.h"
-#include "daemon/data/vehicle.h"
-#include "daemon/odometry/ego_reading_config.h"
+#include "daemon/common/base/visit.h"
+#include "daemon/common/data/vehicle.h"
+#include "daemon/local/perception/local_config.h"
 #include "daemon/pipeline/timeline_config.h"
-#include "daemon/preprocessing/radar/radar_preprocessing.h"
-#include "daemon/tracking/tracker.h"
-#include "daemon/v2v/intake.h"
-#include "daemon/v2v_perception/priority_config.h"
-#include "daemon/visibility/visibility.h"
+#include "daemon/v2v/alignment/alignment.h"
+#include "daemon/v2v/intake/intake.h"
+#include "daemon/v2v/perception/priority_config.h"
 
 namespace v2vouch {
 
@@ -25,6 +22,11 @@ struct PerceptionConfig {
   AlignmentConfig alignment;
   IntakeConfig v2v;
   PriorityConfig priority;
+
+  /// What LOCAL's wing is told of it.
+  [[nodiscard]] LocalConfig local() const {
+    return {vehicle, ego_motion, radar, visibility, tracking};
+  }
 
   template <class Archive>
   void Visit(Archive& a) {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "daemon/base/notice.h"
-#include "daemon/base/time.h"
+#include "daemon/common/base/notice.h"
+#include "daemon/common/base/time.h"
 #include "daemon/pipeline/timeline_config.h"
 
 namespace v2vouch {

@@ -86,7 +86,7 @@ EventKey KeyOf(const TimelineInput& input) {
 
 Timeline::Timeline(const PerceptionConfig& config)
     : config_(config),
-      local_(config),
+      local_(config.local()),
       priority_(config.priority, config.alignment, config.vehicle),
       before_(std::make_unique<Checkpoint>(Checkpoint{local_, priority_})) {}
 

@@ -10,11 +10,12 @@
 #include <variant>
 #include <vector>
 
-#include "daemon/data/bias.h"
-#include "daemon/data/claim.h"
-#include "daemon/data/outputs.h"
-#include "daemon/pipeline/local_perception.h"
-#include "daemon/v2v_perception/v2v_perception.h"
+#include "daemon/common/data/bias.h"
+#include "daemon/common/data/claim.h"
+#include "daemon/common/data/outputs.h"
+#include "daemon/local/perception/local_perception.h"
+#include "daemon/pipeline/perception_config.h"
+#include "daemon/v2v/perception/v2v_perception.h"
 
 namespace v2vouch {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "daemon/base/visit.h"
+#include "daemon/common/base/visit.h"
 
 namespace v2vouch {
 

@@ -46,8 +46,8 @@ endfunction()
 # Tests that scripts/test runs once more under the sanitizers: the rooms through which foreign bytes
 # come in, and those that index by them. Building everything instrumented takes too long for that.
 set(V2VOUCH_SANITIZED_ROOMS
-  daemon/base daemon/assignment daemon/config daemon/detection daemon/io daemon/obu daemon/preprocessing
-  daemon/v2v daemon/wire sim/import fuzz)
+  daemon/common/base daemon/common/assignment daemon/rim/config daemon/detector daemon/rim/io daemon/obu daemon/local/radar daemon/local/camera
+  daemon/v2v/intake daemon/rim/wire sim/import fuzz)
 if(NOT TARGET v2vouch_sanitized_tests)
   add_custom_target(v2vouch_sanitized_tests)
 endif()

@@ -10,11 +10,11 @@
 #include <set>
 #include <utility>
 
-#include "daemon/base/did_you_mean.h"
-#include "daemon/config/yaml_reader.h"
-#include "daemon/io/event_log.h"
-#include "daemon/wire/channels.h"
-#include "daemon/wire/codec.h"
+#include "daemon/common/base/did_you_mean.h"
+#include "daemon/rim/config/yaml_reader.h"
+#include "daemon/rim/io/event_log.h"
+#include "daemon/rim/wire/channels.h"
+#include "daemon/rim/wire/codec.h"
 #include "sim/annotation/drawing.h"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/text_t.hpp"

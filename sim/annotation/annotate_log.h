@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "daemon/base/time.h"
+#include "daemon/common/base/time.h"
 
 namespace v2vouch::sim {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/data/vehicle.h"
+#include "daemon/common/data/vehicle.h"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/track_list_t.hpp"
 

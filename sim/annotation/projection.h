@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "daemon/data/vehicle.h"
+#include "daemon/common/data/vehicle.h"
 
 namespace v2vouch::sim {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 #include "sim/attacks/claimed_path.h"
 #include "sim/attacks/gate.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 #include "sim/attacks/ego_line.h"
 #include "sim/attacks/view_timeline.h"
 #include "sim/sensors/gnss_error.h"

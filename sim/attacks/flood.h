@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 #include "sim/attacks/gate.h"
 #include "sim/sensors/message.h"
 #include "sim/world/world.h"

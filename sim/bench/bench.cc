@@ -8,10 +8,10 @@
 #include <map>
 #include <set>
 
-#include "daemon/base/angle.h"
-#include "daemon/data/measurement.h"
-#include "daemon/tracking/tracker.h"
-#include "sim/evaluation/gospa.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/common/data/measurement.h"
+#include "daemon/local/tracking/tracker.h"
+#include "sim/metrics/gospa.h"
 
 namespace v2vouch::bench {
 namespace {

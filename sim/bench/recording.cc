@@ -7,8 +7,8 @@
 #include <cstring>
 #include <memory>
 
-#include "daemon/base/angle.h"
-#include "daemon/io/output_file.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/rim/io/output_file.h"
 #include "sim/import/csv.h"
 
 namespace v2vouch::bench {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "daemon/base/angle.h"
-#include "daemon/base/random.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/common/base/random.h"
 
 namespace v2vouch::bench {
 namespace {

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "daemon/base/did_you_mean.h"
+#include "daemon/common/base/did_you_mean.h"
 
 namespace v2vouch::campaign {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "sim/evaluation/spoof_json.h"
+#include "sim/spoofing/spoof_json.h"
 
 namespace v2vouch::campaign {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/campaign/job.h"
-#include "sim/evaluation/spoof_run.h"
+#include "sim/spoofing/spoof_run.h"
 
 namespace v2vouch::campaign {
 

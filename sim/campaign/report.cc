@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "daemon/io/durable_file.h"
+#include "daemon/rim/io/durable_file.h"
 #include "sim/campaign/families.h"
 #include "sim/campaign/report_plots.h"
 #include "sim/campaign/targets.h"
-#include "sim/evaluation/report_style.h"
-#include "sim/evaluation/svg.h"
+#include "sim/plot/report_style.h"
+#include "sim/plot/svg.h"
 
 namespace v2vouch::campaign {
 namespace {

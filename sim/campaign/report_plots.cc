@@ -8,7 +8,7 @@
 #include <map>
 
 #include "sim/campaign/families.h"
-#include "sim/evaluation/svg.h"
+#include "sim/plot/svg.h"
 
 namespace v2vouch::campaign {
 namespace {

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "sim/evaluation/spoof_json.h"
+#include "sim/spoofing/spoof_json.h"
 
 namespace v2vouch::campaign {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/campaign/record.h"
-#include "sim/evaluation/spoof_pool.h"
+#include "sim/spoofing/spoof_pool.h"
 
 namespace v2vouch::campaign {
 

@@ -3,7 +3,7 @@
 
 #include "sim/campaign/summary.h"
 #include "sim/campaign/targets.h"
-#include "sim/evaluation/svg.h"
+#include "sim/plot/svg.h"
 
 namespace v2vouch::campaign {
 namespace {

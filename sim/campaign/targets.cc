@@ -6,7 +6,7 @@
 #include <functional>
 #include <string_view>
 
-#include "sim/evaluation/svg.h"
+#include "sim/plot/svg.h"
 
 namespace v2vouch::campaign {
 namespace {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <numbers>
 
-#include "daemon/base/angle.h"
-#include "daemon/wire/codec.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/rim/wire/codec.h"
 #include "sim/import/comma2k19.h"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"

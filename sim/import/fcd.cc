@@ -7,7 +7,7 @@
 #include <map>
 #include <string_view>
 
-#include "daemon/base/angle.h"
+#include "daemon/common/base/angle.h"
 #include "sim/import/csv.h"
 
 namespace v2vouch::sim {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/data/input.h"
+#include "daemon/common/data/input.h"
 
 namespace v2vouch::sim {
 

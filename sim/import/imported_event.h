@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/time.h"
+#include "daemon/common/base/time.h"
 
 namespace v2vouch::sim {
 

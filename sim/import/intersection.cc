@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "daemon/base/angle.h"
+#include "daemon/common/base/angle.h"
 #include "sim/world/geometry.h"
 
 namespace v2vouch::sim {

@@ -10,10 +10,10 @@
 #include <optional>
 #include <utility>
 
-#include "daemon/base/angle.h"
-#include "daemon/base/random.h"
-#include "daemon/data/object_class.h"
-#include "daemon/wire/codec.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/common/base/random.h"
+#include "daemon/common/data/object_class.h"
+#include "daemon/rim/wire/codec.h"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"

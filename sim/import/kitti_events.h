@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "daemon/data/vehicle.h"
+#include "daemon/common/data/vehicle.h"
 #include "sim/import/imported_event.h"
 #include "sim/import/kitti.h"
 
 namespace v2vouch::sim {
 
-/// The shipped description of KITTI's car (daemon/config/vehicle_kitti.yaml) has the same camera.
+/// The shipped description of KITTI's car (daemon/vehicles/vehicle_kitti.yaml) has the same camera.
 struct KittiOptions {
   std::string camera_name = "FRONT";
   double camera_x_m = 1.13;  ///< Ahead of the rear axle: KITTI's set-up page, 0.27 + 0.81 + 0.05.

@@ -6,10 +6,10 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "daemon/base/angle.h"
-#include "daemon/base/random.h"
-#include "daemon/data/object_class.h"
-#include "daemon/data/vehicle.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/common/base/random.h"
+#include "daemon/common/data/object_class.h"
+#include "daemon/common/data/vehicle.h"
 #include "sim/import/drive_on.h"
 #include "sim/import/intersection.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/data/object_class.h"
+#include "daemon/common/data/object_class.h"
 #include "sim/sensors/subject.h"
 
 namespace v2vouch::sim {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 #include "sim/world/geometry.h"
 #include "sim/world/scenario.h"
 

@@ -5,7 +5,7 @@
 #include <v2vouch/radar_scan_t.hpp>
 #include <vector>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 #include "sim/sensors/skyline.h"
 #include "sim/world/world.h"
 

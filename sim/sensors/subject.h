@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 
 namespace v2vouch::sim {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "daemon/base/angle.h"
-#include "daemon/base/visit.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/common/base/visit.h"
 
 /// The blocks of an attack's `change` list (attack_spec.h). "along" is the direction of the claimed
 /// heading, "left" is left of it; east and north are axes of the world frame W.

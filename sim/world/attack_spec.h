@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/visit.h"
+#include "daemon/common/base/visit.h"
 #include "sim/world/attack_change_spec.h"
 
 /// Section `attacks` of a scenario: who lies, from when on, along what path, and how what is said

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "daemon/base/angle.h"
+#include "daemon/common/base/angle.h"
 
 namespace v2vouch::sim {
 

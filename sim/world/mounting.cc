@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world/mounting.h"
 
-#include "daemon/base/did_you_mean.h"
+#include "daemon/common/base/did_you_mean.h"
 
 namespace v2vouch::sim {
 namespace {

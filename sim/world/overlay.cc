@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include "daemon/config/yaml_reader.h"
+#include "daemon/rim/config/yaml_reader.h"
 
 namespace v2vouch::sim {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "daemon/base/angle.h"
-#include "daemon/base/visit.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/common/base/visit.h"
 
 /// Sections of a scenario file about those who talk: GNSS receivers, on-board units, the radio.
 /// World frame W as in scenario.h.

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <set>
 
-#include "daemon/base/did_you_mean.h"
-#include "daemon/config/yaml_writer.h"
+#include "daemon/common/base/did_you_mean.h"
+#include "daemon/rim/config/yaml_writer.h"
 #include "sim/world/mounting.h"
 
 namespace v2vouch::sim {

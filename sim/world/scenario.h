@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/angle.h"
-#include "daemon/base/visit.h"
-#include "daemon/data/object_class.h"
-#include "daemon/data/vehicle.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/common/base/visit.h"
+#include "daemon/common/data/object_class.h"
+#include "daemon/common/data/vehicle.h"
 #include "sim/world/attack_spec.h"
 #include "sim/world/radio_specs.h"
 #include "sim/world/sensor_specs.h"

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "daemon/base/angle.h"
-#include "daemon/base/visit.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/common/base/visit.h"
 #include "sim/world/radio_specs.h"
 
 /// Sections of a scenario file about what the ego measures: radar, camera, its own GNSS, odometry,

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 
 namespace v2vouch::sim {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/visit.h"
+#include "daemon/common/base/visit.h"
 
 /// Section `traffic` of a scenario: vehicles nobody wrote down one by one.
 namespace v2vouch::sim {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "daemon/data/object_class.h"
+#include "daemon/common/data/object_class.h"
 
 namespace v2vouch::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 #include "sim/world/mounting.h"
 #include "sim/world/traffic.h"
 

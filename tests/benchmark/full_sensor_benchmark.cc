@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "calibration/gps_bias/gps_bias.h"
 #include "daemon/pipeline/perception.h"
+#include "daemon/v2v/gps_bias/gps_bias.h"
 #include "tests/support/full_radar.h"
 
 namespace v2vouch {

@@ -8,11 +8,11 @@
 #include <variant>
 #include <vector>
 
-#include "calibration/gps_bias/gps_bias.h"
-#include "daemon/base/random.h"
-#include "daemon/base/sha256.h"
+#include "daemon/common/base/random.h"
+#include "daemon/common/base/sha256.h"
 #include "daemon/pipeline/perception.h"
 #include "daemon/pipeline/timeline.h"
+#include "daemon/v2v/gps_bias/gps_bias.h"
 #include "tests/support/synthetic_drive.h"
 
 namespace v2vouch {
@@ -215,8 +215,8 @@ void BM_LocalCheckpoint(benchmark::State& state) {
 }
 BENCHMARK(BM_LocalCheckpoint)->Arg(10)->Arg(50)->Unit(benchmark::kMicrosecond);
 
-// The running digest over 7 kB, a list of ten tracks. Can afford 10 us with the SHA extensions of the
-// processor, 40 us without.
+// The running digest over 7 kB, a list of ten tracks. Can afford 10 us with the SHA extensions of
+// the processor, 40 us without.
 void BM_Digest(benchmark::State& state) {
   const std::vector<std::uint8_t> list(7000, 0x5a);
   Sha256 digest;

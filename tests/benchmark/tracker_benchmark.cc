@@ -6,13 +6,13 @@
 #include <cmath>
 #include <vector>
 
-#include "daemon/assignment/assignment.h"
-#include "daemon/base/random.h"
-#include "daemon/preprocessing/radar/dbscan.h"
-#include "daemon/tracking/existence.h"
-#include "daemon/tracking/place_index.h"
-#include "daemon/tracking/tracker.h"
-#include "daemon/visibility/visibility.h"
+#include "daemon/common/assignment/assignment.h"
+#include "daemon/common/base/random.h"
+#include "daemon/local/radar/dbscan.h"
+#include "daemon/local/tracking/existence.h"
+#include "daemon/local/tracking/place_index.h"
+#include "daemon/local/tracking/tracker.h"
+#include "daemon/local/visibility/visibility.h"
 #include "sim/bench/traffic.h"
 
 namespace v2vouch {

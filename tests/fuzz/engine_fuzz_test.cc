@@ -9,8 +9,8 @@
 #include <cstring>
 #include <random>
 
-#include "daemon/assembly/engine.h"
-#include "daemon/wire/codec.h"
+#include "daemon/rim/engine/engine.h"
+#include "daemon/rim/wire/codec.h"
 #include "tests/support/synthetic_drive.h"
 #include "tests/support/wire_drive.h"
 #include "v2vouch/track_list_t.hpp"

@@ -9,9 +9,9 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "daemon/detection/network_detector.h"
-#include "daemon/wire/codec.h"
-#include "daemon/wire/input_decoder.h"
+#include "daemon/detector/network_detector.h"
+#include "daemon/rim/wire/codec.h"
+#include "daemon/rim/wire/input_decoder.h"
 #include "v2vouch/camera_image_t.hpp"
 
 namespace v2vouch {

@@ -10,10 +10,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "daemon/assembly/daemon_config.h"
-#include "daemon/assembly/engine.h"
+#include "daemon/rim/engine/daemon_config.h"
+#include "daemon/rim/engine/engine.h"
 #include "sim/import/comma2k19.h"
-#include "sim/wire/simulation.h"
+#include "sim/simulation/simulation.h"
 #include "sim/world/overlay.h"
 #include "sim/world/world.h"
 #include "tests/golden/late_and_odd.h"
@@ -103,7 +103,7 @@ void Compare(const std::string& name, const std::string& found) {
 }
 
 void Check(const std::string& name, const Events& events,
-           const std::string& vehicle = "daemon/config/vehicle.yaml") {
+           const std::string& vehicle = "daemon/vehicles/vehicle.yaml") {
   ASSERT_FALSE(events.empty());
   Compare(name, Perceive(events, vehicle, name));
 }
@@ -133,7 +133,7 @@ TEST(Golden, RealDrive) {
     }
     events.push_back({event.received, event.channel, std::move(event.bytes)});
   }
-  Check("comma2k19", events, "daemon/config/vehicle_comma2k19.yaml");
+  Check("comma2k19", events, "daemon/vehicles/vehicle_comma2k19.yaml");
 }
 
 }  // namespace

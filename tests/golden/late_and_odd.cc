@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "daemon/wire/codec.h"
+#include "daemon/rim/wire/codec.h"
 #include "v2vouch/bsm_t.hpp"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/wire/simulation.h"
+#include "sim/simulation/simulation.h"
 
 namespace v2vouch::testing {
 

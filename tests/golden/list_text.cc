@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "daemon/base/angle.h"
-#include "daemon/wire/codec.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/rim/wire/codec.h"
 
 namespace v2vouch::testing {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "daemon/assembly/engine.h"
+#include "daemon/rim/engine/engine.h"
 #include "v2vouch/misbehavior_report_t.hpp"
 #include "v2vouch/track_list_t.hpp"
 

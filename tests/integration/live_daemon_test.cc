@@ -15,9 +15,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "daemon/io/event_log.h"
-#include "daemon/io/lcm_bus.h"
-#include "daemon/wire/codec.h"
+#include "daemon/rim/io/event_log.h"
+#include "daemon/rim/io/lcm_bus.h"
+#include "daemon/rim/wire/codec.h"
 #include "tests/integration/program.h"
 #include "tests/support/synthetic_drive.h"
 #include "tests/support/wire_drive.h"

@@ -17,10 +17,10 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/base/random.h"
-#include "daemon/io/event_log.h"
-#include "daemon/io/lcm_bus.h"
-#include "daemon/wire/codec.h"
+#include "daemon/common/base/random.h"
+#include "daemon/rim/io/event_log.h"
+#include "daemon/rim/io/lcm_bus.h"
+#include "daemon/rim/wire/codec.h"
 #include "tests/integration/program.h"
 #include "tests/support/flood.h"
 #include "tests/support/wire_drive.h"

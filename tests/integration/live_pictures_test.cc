@@ -11,9 +11,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
 
-#include "daemon/io/lcm_bus.h"
-#include "daemon/wire/codec.h"
-#include "tests/daemon/detection/data_folder.h"
+#include "daemon/rim/io/lcm_bus.h"
+#include "daemon/rim/wire/codec.h"
+#include "tests/daemon/detector/data_folder.h"
 #include "tests/integration/program.h"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"

@@ -16,10 +16,10 @@
 #include <mutex>
 #include <thread>
 
-#include "daemon/assembly/engine.h"
-#include "daemon/assembly/trust_file.h"
-#include "daemon/io/lcm_bus.h"
-#include "daemon/wire/codec.h"
+#include "daemon/rim/engine/engine.h"
+#include "daemon/rim/engine/trust_file.h"
+#include "daemon/rim/io/lcm_bus.h"
+#include "daemon/rim/wire/codec.h"
 #include "tests/integration/program.h"
 #include "tests/support/synthetic_drive.h"
 #include "tests/support/wire_drive.h"

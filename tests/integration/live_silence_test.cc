@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/io/event_log.h"
-#include "daemon/wire/codec.h"
+#include "daemon/rim/io/event_log.h"
+#include "daemon/rim/wire/codec.h"
 #include "tests/integration/program.h"
 #include "tests/support/synthetic_drive.h"
 #include "tests/support/wire_drive.h"

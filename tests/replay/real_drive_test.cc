@@ -9,9 +9,9 @@
 #include <map>
 #include <set>
 
-#include "daemon/assembly/daemon_config.h"
-#include "daemon/assembly/engine.h"
-#include "daemon/wire/codec.h"
+#include "daemon/rim/engine/daemon_config.h"
+#include "daemon/rim/engine/engine.h"
+#include "daemon/rim/wire/codec.h"
 #include "sim/import/comma2k19.h"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/track_list_t.hpp"
@@ -76,7 +76,7 @@ TEST(RealDrive, TheLongestSlotIsOneLocalTrackWithoutIdentitySwitch) {
   ASSERT_FALSE(events.empty()) << error;
   DaemonConfig config;
   std::vector<std::string> problems;
-  ASSERT_TRUE(LoadDaemonConfig("daemon/config/vehicle_comma2k19.yaml", config, problems));
+  ASSERT_TRUE(LoadDaemonConfig("daemon/vehicles/vehicle_comma2k19.yaml", config, problems));
   const auto run = LongestRun(events, kLongestSlot, config.perception.vehicle.radars[0]);
   ASSERT_GT(static_cast<double>(run.rbegin()->first - run.begin()->first) * 1e-6, 32.0);
 

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "daemon/assembly/daemon_config.h"
-#include "daemon/assembly/engine.h"
-#include "daemon/base/angle.h"
-#include "daemon/wire/codec.h"
-#include "sim/wire/simulation.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/rim/engine/daemon_config.h"
+#include "daemon/rim/engine/engine.h"
+#include "daemon/rim/wire/codec.h"
+#include "sim/simulation/simulation.h"
 #include "sim/world/scenario.h"
 #include "sim/world/world.h"
 #include "v2vouch/ego_motion_t.hpp"

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/assembly/daemon_config.h"
-#include "daemon/assembly/engine.h"
-#include "daemon/base/angle.h"
-#include "daemon/geodesy/ecef.h"
-#include "daemon/wire/codec.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/common/geodesy/ecef.h"
+#include "daemon/rim/engine/daemon_config.h"
+#include "daemon/rim/engine/engine.h"
+#include "daemon/rim/wire/codec.h"
 #include "sim/world/scenario.h"
 #include "sim/world/world.h"
 #include "v2vouch/bsm_t.hpp"

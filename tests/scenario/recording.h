@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/reason.h"
-#include "sim/wire/simulation.h"
+#include "daemon/common/base/reason.h"
+#include "sim/simulation/simulation.h"
 
 namespace v2vouch::testing {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/base/angle.h"
-#include "daemon/wire/codec.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/rim/wire/codec.h"
 #include "tests/scenario/recording.h"
 #include "v2vouch/bsm_t.hpp"
 #include "v2vouch/camera_detections_t.hpp"

@@ -11,10 +11,10 @@
 #include <map>
 #include <optional>
 
-#include "daemon/assembly/daemon_config.h"
-#include "daemon/pipeline/local_perception.h"
-#include "daemon/wire/codec.h"
-#include "daemon/wire/input_decoder.h"
+#include "daemon/local/perception/local_perception.h"
+#include "daemon/rim/engine/daemon_config.h"
+#include "daemon/rim/wire/codec.h"
+#include "daemon/rim/wire/input_decoder.h"
 #include "tests/scenario/recording.h"
 #include "v2vouch/truth_list_t.hpp"
 

@@ -12,8 +12,8 @@ sys.path.insert(0, os.path.join(ROOT, "scripts"))
 import check_layering  # noqa: E402
 
 TABLE = """
-group low = daemon/base eigen
-daemon/base  :
+group low = daemon/common/base eigen
+daemon/common/base  :
 daemon/track : low
 daemon/rim   : low daemon/track yaml files clock
 """
@@ -30,17 +30,17 @@ class CheckLayering(unittest.TestCase):
 
     def test_a_listed_arrow_passes(self):
         self.assertEqual([], self.faults({
-            "daemon/base/a.h": "#include <vector>\n",
-            "daemon/track/t.cc": '#include "daemon/base/a.h"\n#include <Eigen/Core>\n',
+            "daemon/common/base/a.h": "#include <vector>\n",
+            "daemon/track/t.cc": '#include "daemon/common/base/a.h"\n#include <Eigen/Core>\n',
         }))
 
     def test_an_unlisted_arrow_is_a_fault_with_file_and_line(self):
         faults = self.faults({
             "daemon/track/t.h": "",
-            "daemon/base/a.h": '// why\n#include "daemon/track/t.h"\n',
+            "daemon/common/base/a.h": '// why\n#include "daemon/track/t.h"\n',
         })
         self.assertEqual(
-            ["daemon/base/a.h:2: daemon/base may not include daemon/track (daemon/track/t.h)"],
+            ["daemon/common/base/a.h:2: daemon/common/base may not include daemon/track (daemon/track/t.h)"],
             faults)
 
     def test_a_library_outside_its_room_is_a_fault(self):
@@ -60,11 +60,11 @@ class CheckLayering(unittest.TestCase):
 
     def test_commented_includes_do_not_count(self):
         self.assertEqual([], self.faults(
-            {"daemon/base/a.h": '/*\n#include "daemon/track/t.h"\n*/\n'}))
+            {"daemon/common/base/a.h": '/*\n#include "daemon/track/t.h"\n*/\n'}))
 
     def test_missing_headers_foreign_paths_and_unknown_libraries_are_faults(self):
         faults = self.faults({"daemon/track/t.cc":
-                              '#include "daemon/base/gone.h"\n#include "t.h"\n#include <odd/x.h>\n'})
+                              '#include "daemon/common/base/gone.h"\n#include "t.h"\n#include <odd/x.h>\n'})
         self.assertEqual(3, len(faults))
 
     def test_a_folder_that_is_no_room_is_a_fault(self):

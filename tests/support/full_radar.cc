@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <variant>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 
 namespace v2vouch::testing {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "daemon/data/input.h"
+#include "daemon/common/data/input.h"
 #include "tests/support/synthetic_drive.h"
 
 namespace v2vouch::testing {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/base/random.h"
-#include "daemon/geodesy/ecef.h"
+#include "daemon/common/base/random.h"
+#include "daemon/common/geodesy/ecef.h"
 
 namespace v2vouch::testing {
 namespace {

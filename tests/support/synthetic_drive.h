@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "daemon/base/random.h"
-#include "daemon/data/input.h"
-#include "daemon/data/vehicle.h"
+#include "daemon/common/base/random.h"
+#include "daemon/common/data/input.h"
+#include "daemon/common/data/vehicle.h"
 
 namespace v2vouch::testing {
 

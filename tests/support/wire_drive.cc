@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "daemon/base/angle.h"
-#include "daemon/wire/codec.h"
-#include "daemon/wire/output_encoder.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/rim/wire/codec.h"
+#include "daemon/rim/wire/output_encoder.h"
 #include "v2vouch/bsm_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/data/input.h"
-#include "daemon/data/vehicle.h"
+#include "daemon/common/data/input.h"
+#include "daemon/common/data/vehicle.h"
 
 namespace v2vouch::testing {
 

@@ -2,10 +2,10 @@
 // v2vouch-obu: from on-board units to channel BSM; prints what is in a capture.
 #include <iostream>
 
-#include "daemon/io/lcm_url.h"
-#include "daemon/io/std_streams.h"
-#include "daemon/program/command_line.h"
 #include "daemon/programs/obu/decode.h"
+#include "daemon/rim/io/lcm_url.h"
+#include "daemon/rim/io/std_streams.h"
+#include "daemon/rim/program/command_line.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "daemon/wire/input_decoder.h"
-#include "sim/wire/simulation.h"
+#include "daemon/rim/wire/input_decoder.h"
+#include "sim/simulation/simulation.h"
 #include "sim/world/world.h"
 
 namespace v2vouch {

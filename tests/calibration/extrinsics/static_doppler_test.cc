@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 
 namespace v2vouch {
 namespace {

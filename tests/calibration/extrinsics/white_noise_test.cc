@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 
 namespace v2vouch {
 namespace {

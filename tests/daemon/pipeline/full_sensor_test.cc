@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "daemon/pipeline/local_perception.h"
+#include "daemon/local/perception/local_perception.h"
 #include "tests/support/full_radar.h"
 
 namespace v2vouch {
@@ -35,7 +35,7 @@ struct Most {
 };
 
 Most MostOf(const std::vector<Input>& inputs) {
-  LocalPerception local{PerceptionConfig{}};
+  LocalPerception local{LocalConfig{}};
   LocalFrame frame;
   Most most;
   for (const Input& input : inputs) {

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/gps_bias/gps_bias.h"
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 #include "daemon/pipeline/perception.h"
 #include "daemon/pipeline/timeline.h"
+#include "daemon/v2v/gps_bias/gps_bias.h"
 #include "tests/support/synthetic_drive.h"
 
 namespace v2vouch {

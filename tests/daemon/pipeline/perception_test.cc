@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-#include "daemon/base/random.h"
+#include "daemon/common/base/random.h"
 #include "tests/support/synthetic_drive.h"
 
 namespace v2vouch {

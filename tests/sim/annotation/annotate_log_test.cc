@@ -6,8 +6,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "daemon/io/event_log.h"
-#include "daemon/wire/codec.h"
+#include "daemon/rim/io/event_log.h"
+#include "daemon/rim/wire/codec.h"
 #include "sim/annotation/projection.h"
 #include "tests/sim/import/files.h"
 #include "v2vouch/camera_detections_t.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "daemon/preprocessing/camera/camera_preprocessing.h"
+#include "daemon/local/camera/camera_preprocessing.h"
 
 namespace v2vouch::sim {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "daemon/base/angle.h"
+#include "daemon/common/base/angle.h"
 
 namespace v2vouch::bench {
 namespace {

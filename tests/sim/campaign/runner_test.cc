@@ -11,7 +11,7 @@
 #include <iterator>
 #include <thread>
 
-#include "sim/evaluation/spoof_json.h"
+#include "sim/spoofing/spoof_json.h"
 
 namespace v2vouch::campaign {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <map>
 
-#include "daemon/base/angle.h"
-#include "daemon/wire/codec.h"
+#include "daemon/common/base/angle.h"
+#include "daemon/rim/wire/codec.h"
 #include "tests/sim/import/files.h"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "daemon/base/angle.h"
+#include "daemon/common/base/angle.h"
 #include "tests/sim/import/files.h"
 
 namespace v2vouch::sim {

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "daemon/wire/codec.h"
+#include "daemon/rim/wire/codec.h"
 #include "sim/import/kitti_events.h"
 #include "tests/sim/import/files.h"
 #include "v2vouch/camera_detections_t.hpp"

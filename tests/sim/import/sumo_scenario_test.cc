@@ -7,7 +7,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "daemon/base/angle.h"
+#include "daemon/common/base/angle.h"
 #include "sim/import/intersection.h"
 #include "sim/world/scenario.h"
 #include "sim/world/trajectory.h"

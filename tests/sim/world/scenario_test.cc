@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "daemon/config/yaml_reader.h"
+#include "daemon/rim/config/yaml_reader.h"
 #include "sim/world/world.h"
 
 namespace v2vouch::sim {

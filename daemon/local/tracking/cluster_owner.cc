@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/local/tracking/cluster_owner.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/common/base/angle.h"
+#include "daemon/common/models/extent.h"
+#include "daemon/local/tracking/tracker.h"
+
+namespace v2vouch {
+namespace {
+
+// A cluster belongs to a vehicle up to this far outside of its box, plus its own noise.
+constexpr double kBoxMargin_m = 0.5;
+constexpr double kStandingMargin_m = 0.3;
+// Ahead and behind vehicles keep more distance than this from each other.
+constexpr double kEndMargin_m = 1.5;
+constexpr double kMaxBlur_m = 1.5;
+// A vehicle whose length is open does not own what lies a car's length off.
+constexpr double kMostDoubt_m = 1.5;
+// While a vehicle's direction is unknown, this round its reflecting point.
+constexpr double kPointRadius_m = 2.5;
+// Parts of one rigid body move as one; wheels and limbs of the model do not.
+constexpr double kRangeRateSlack_mps = 1.5;
+// Tracks that are hardly believed own what lies near them only while they are being hit.
+constexpr double kOwnerExistence = 0.5;
+// A lorry or bus whose length is not known yet may reach this many sigmas farther.
+constexpr double kLongReachSigmas = 2.0;
+
+// How far from its centre a vehicle may reflect along its axis.
+double ReachAlong(const LocalTrack& track) {
+  const Extent& extent = track.extent;
+  if (!IsLong(track.object_class))
+    return 0.5 * extent.length_m + std::min(extent.length_sigma_m, kMostDoubt_m) + kEndMargin_m;
+  return std::min(0.5 * extent.length_m + kLongReachSigmas * extent.length_sigma_m,
+                  kLongestVehicle_m - 0.5 * extent.length_m) +
+         kEndMargin_m;
+}
+
+}  // namespace
+
+RadarMeasurement JoinClusters(const RadarMeasurement& a, const RadarMeasurement& b) {
+  const double na = std::max(a.returns, 1);
+  const double nb = std::max(b.returns, 1);
+  const double wa = na / (na + nb);
+  const double wb = nb / (na + nb);
+  const auto far = [](const RadarMeasurement& z) { return z.near_range_m + z.radial_extent_m; };
+  RadarMeasurement out = a;
+  out.returns = a.returns + b.returns;
+  out.range_m = wa * a.range_m + wb * b.range_m;
+  out.azimuth_rad = WrapAngle(a.azimuth_rad + wb * AngleDifference(b.azimuth_rad, a.azimuth_rad));
+  out.range_rate_mps = wa * a.range_rate_mps + wb * b.range_rate_mps;
+  out.ground_range_rate_mps = wa * a.ground_range_rate_mps + wb * b.ground_range_rate_mps;
+  out.covariance = wa * wa * a.covariance + wb * wb * b.covariance;
+  out.near_range_m = std::min(a.near_range_m, b.near_range_m);
+  out.radial_extent_m = std::max(far(a), far(b)) - out.near_range_m;
+  out.azimuth_min_rad = std::min(a.azimuth_min_rad, b.azimuth_min_rad);
+  out.azimuth_max_rad = std::max(a.azimuth_max_rad, b.azimuth_max_rad);
+  out.is_static = a.is_static && b.is_static;
+  return out;
+}
+
+// Whether a cluster at p_O can be a part of the tracked vehicle: inside its box and moving with it.
+bool Tracker::Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,
+                   const Eigen::Vector2d& p_O) const {
+  const TrackFilter& filter = hidden_[track].filter;
+  const StateVector& x = tracks_[track].state_O.mean;
+  const double blur_m =
+      std::min(2.0 * (std::sqrt(z.covariance(0, 0)) + z.range_m * std::sqrt(z.covariance(1, 1))),
+               kMaxBlur_m);
+  const Eigen::Vector2d from_point = p_O - filter.position_O();
+  Eigen::Vector2d turning = Eigen::Vector2d::Zero();
+  if (filter.is_vehicle()) {
+    const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-x[kYaw]) * from_point;
+    const Extent& extent = tracks_[track].extent;
+    // What stands near a standing vehicle need not belong to it.
+    const double reach = z.is_static ? 0.5 * extent.length_m : ReachAlong(tracks_[track]) + blur_m;
+    const double aside = z.is_static ? kStandingMargin_m : kBoxMargin_m + blur_m;
+    if (std::abs(inside.x()) > reach || std::abs(inside.y()) > 0.5 * extent.width_m + aside) {
+      return false;
+    }
+    turning = x[kYawRate] * Eigen::Vector2d(-from_point.y(), from_point.x());
+  } else if (z.is_static || from_point.norm() > kPointRadius_m + blur_m) {
+    return false;
+  }
+  const Eigen::Vector2d line = (p_O - look.origin_O()).normalized();
+  const Eigen::Vector2d velocity = filter.velocity_O() + turning;
+  const double slack = kRangeRateSlack_mps + 3.0 * std::sqrt(z.covariance(2, 2));
+  return std::abs(line.dot(velocity) - z.ground_range_rate_mps) <= slack;
+}
+
+// Gives every cluster that was assigned, or that lies in a tracked vehicle's box, an owner.
+void Tracker::AbsorbClusters(const RadarLook& look,
+                             std::span<const RadarMeasurement> measurements) {
+  owner_.assign(measurements.size(), -1);
+  constexpr int kAssigned = 1 << 30;  // Has a track of its own; joins nobody.
+  for (const int j : assigned_) {
+    if (j >= 0) owner_[static_cast<std::size_t>(j)] = kAssigned;
+  }
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (assigned_[i] < 0 && tracks_[i].existence < kOwnerExistence) continue;
+    const double reach_m =
+        ReachAlong(tracks_[i]) + tracks_[i].extent.width_m + kPointRadius_m + kMaxBlur_m;
+    candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m, [&](std::size_t j) {
+      if (owner_[j] >= 0) return;
+      if (Owns(i, look, measurements[j], candidates_[j].p_O)) owner_[j] = static_cast<int>(i);
+    });
+  }
+}
+
+// Whether a box that no track was given shows (a part of) a tracked vehicle after all: half hidden
+// vehicles have edges where the hiding one ends.
+bool Tracker::Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z,
+                     const Fix& fix) const {
+  if (tracks_[track].existence < kOwnerExistence) return false;
+  const StateVector& x = tracks_[track].state_O.mean;
+  const Eigen::Vector2d line = x.head<2>() - look.origin_O();
+  const double range_m = line.norm();
+  if (range_m < 1.0) return true;
+  const double bearing =
+      WrapAngle(std::atan2(line.y(), line.x()) - look.ego.X_OB.yaw_rad() - look.camera.yaw_rad);
+  const double half =
+      0.5 * std::hypot(tracks_[track].extent.length_m, tracks_[track].extent.width_m) / range_m;
+  const double overlap =
+      std::min(z.azimuth_left_rad, bearing + half) - std::max(z.azimuth_right_rad, bearing - half);
+  if (overlap < 0.5 * (z.azimuth_left_rad - z.azimuth_right_rad)) return false;
+  const double fix_range_m = (fix.p_O - look.origin_O()).norm();
+  const Eigen::Vector2d u = line / range_m;
+  const double range_sigma = std::sqrt(u.dot(fix.covariance * u));
+  return std::abs(fix_range_m - range_m) <
+         3.0 * range_sigma + 0.5 * tracks_[track].extent.length_m + 1.0;
+}
+
+}  // namespace v2vouch

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/local/tracking/track_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/common/base/angle.h"
+#include "daemon/common/models/extent.h"
+#include "daemon/local/tracking/candidates.h"
+
+namespace v2vouch {
+namespace {
+
+// Heading sigma for becoming a vehicle, and for being shown as one.
+constexpr double kDirectedSigma_rad = 0.15;
+constexpr double kShownSigma_rad = 0.6;
+// Sigma of the speed over the speed: five standard deviations from standing for good, three until
+// the next list.
+constexpr double kDirectedShare = 0.2;
+constexpr double kShownShare = 0.35;
+// What is hardly longer than wide loses nothing by a wrong direction.
+constexpr double kShownSmallShare = 0.5;
+constexpr double kSmall_m = 2.5;
+// A vehicle whose axis is a guess starts again from its point where that moves by so much in
+// another way, plus what the reflections slide along a body for each radian that the line of sight
+// turns, in lengths of the vehicle.
+constexpr double kOtherMotion_mps = 1.0;
+constexpr double kSlidePerTurn = 1.5;
+// A direction that was only assumed.
+constexpr double kAssumedYawSigma_rad = 0.7;
+// Young tracks are linearised twice: range rate bends strongly over an uncertain heading.
+constexpr double kYoung_s = 0.7;
+// Lasting error of the reflection model, along the vehicle and in any direction.
+constexpr double kAlongFloor_m = 0.06;
+constexpr double kFloor_m = 0.04;
+// A silhouette wider than this shows a side, unless a lorry's.
+constexpr double kWidestCar_m = 3.2;
+
+}  // namespace
+
+TrackFilter TrackFilter::FromRadar(const RadarLook& look, const RadarMeasurement& z,
+                                   const FilterSettings& settings) {
+  TrackFilter filter;
+  filter.point_ = PointFilter::FromRadar(look, z, settings.point_targets);
+  filter.seen_from_ = look.origin_O();
+  filter.default_yaw_rad_ = look.ego.X_OB.yaw_rad();
+  return filter;
+}
+
+TrackFilter TrackFilter::FromCamera(const CameraLook& look, const CameraMeasurement& z,
+                                    const Fix& fix) {
+  TrackFilter filter;
+  filter.point_ = PointFilter::FromCamera(fix);
+  filter.seen_from_ = look.origin_O();
+  filter.default_yaw_rad_ = look.ego.X_OB.yaw_rad();
+  const double width_m =
+      (z.azimuth_left_rad - z.azimuth_right_rad) * (fix.p_O - filter.seen_from_).norm();
+  if (width_m > kWidestCar_m && !IsLong(z.object_class)) {
+    filter.default_yaw_rad_ = WrapAngle(filter.default_yaw_rad_ + 0.5 * kPi);
+  }
+  return filter;
+}
+
+void TrackFilter::TakeStanding(const Fix& fix) {
+  if (!is_vehicle_) point_ = PointFilter::FromStanding(fix, seen_from_);
+}
+
+void TrackFilter::Predict(double dt_s, const FilterSettings& settings) {
+  age_s_ += dt_s;
+  if (is_vehicle_) vehicle_.Predict(dt_s, settings);
+  if (!has_driven()) point_.Predict(dt_s);
+}
+
+template <class Look, class Measurement>
+std::optional<Likelihood> TrackFilter::Evaluate(const Look& look, const Measurement& z,
+                                                const FilterSettings& settings) const {
+  return is_vehicle_ ? vehicle_.Evaluate(look, z, object_class_, settings)
+                     : point_.Evaluate(look, z, settings.point_targets);
+}
+
+template <class Look, class Measurement>
+bool TrackFilter::Update(const Look& look, const Measurement& z, const FilterSettings& settings) {
+  seen_from_ = look.origin_O();
+  if (!is_vehicle_) {
+    if (!point_.Update(look, z, settings.point_targets)) return false;
+    PromoteIfClear(settings);
+    return true;
+  }
+  if (!vehicle_.Update(look, z, object_class_, age_s_ < kYoung_s, settings)) return false;
+  if (!has_driven()) FollowPoint(look, z, settings);
+  return true;
+}
+
+// A vehicle that was never seen moving has the axis that its silhouettes make likeliest. What moves
+// across the line of sight shows no Doppler, and moves across that axis as often as along it.
+template <class Look, class Measurement>
+void TrackFilter::FollowPoint(const Look& look, const Measurement& z,
+                              const FilterSettings& settings) {
+  if (!point_.Update(look, z, settings.point_targets)) return;
+  if (!point_.HasDirection(kDirectedSigma_rad, kDirectedShare)) return;
+  const Eigen::Vector2d sight = point_.position() - seen_from_;
+  const double ego_yaw_rad = look.ego.X_OB.yaw_rad();
+  const double turn_radps = std::abs(look.ego.speed_mps * (std::cos(ego_yaw_rad) * sight.y() -
+                                                           std::sin(ego_yaw_rad) * sight.x())) /
+                            std::max(sight.squaredNorm(), 1.0);
+  const Extent size = vehicle_.best().extent();
+  const double other_mps = kOtherMotion_mps + kSlidePerTurn * size.length_m * turn_radps;
+  if ((point_.velocity() - velocity_O()).norm() < other_mps) return;
+  vehicle_.StartMoving(point_, size, seen_from_, settings);
+}
+
+void TrackFilter::PromoteIfClear(const FilterSettings& settings) {
+  // A lorry's point lies somewhere along it: AssumeClass knows how little that says.
+  const ObjectClass first = IsLong(object_class_) ? ObjectClass::kUnknown : object_class_;
+  const Extent size = ClassExtent(first);
+  if (point_.HasDirection(kDirectedSigma_rad, kDirectedShare)) {
+    vehicle_.StartMoving(point_, size, seen_from_, settings);
+    is_vehicle_ = true;
+  } else if (point_.IsStanding()) {
+    vehicle_.StartStanding(point_, default_yaw_rad_, size, seen_from_, settings);
+    is_vehicle_ = true;
+  }
+  if (is_vehicle_ && first != object_class_) {
+    vehicle_.AssumeClass(first, object_class_, seen_from_);
+  }
+}
+
+void TrackFilter::Lengthen(double length_m, double sigma_m) {
+  if (is_vehicle_) vehicle_.Lengthen(length_m, sigma_m, seen_from_);
+}
+
+void TrackFilter::SetClass(ObjectClass object_class) {
+  if (object_class == object_class_) return;
+  if (is_vehicle_ && !vehicle_.is_size_open()) {
+    vehicle_.AssumeClass(object_class_, object_class, seen_from_);
+  }
+  object_class_ = object_class;
+}
+
+ExtendedState TrackFilter::ShowPoint(const FilterSettings& settings) const {
+  const Extent size = ClassExtent(object_class_);
+  const double share = size.length_m < kSmall_m ? kShownSmallShare : kShownShare;
+  if (point_.HasDirection(kShownSigma_rad, share)) {
+    return VehicleAt(point_, 0.0, 0.0, size, seen_from_, settings);
+  }
+  ExtendedState state =
+      VehicleAt(point_, default_yaw_rad_, kAssumedYawSigma_rad, size, seen_from_, settings);
+  // Along the assumed direction the speed may be known well, and it says nothing of the rest.
+  const Eigen::Vector2d forward(std::cos(default_yaw_rad_), std::sin(default_yaw_rad_));
+  const Eigen::Vector2d across = point_.velocity() - point_.velocity().dot(forward) * forward;
+  const double sigma_mps = LargestSigma(point_.covariance().bottomRightCorner<2, 2>());
+  double& variance = state.covariance(kSpeed, kSpeed);
+  variance = std::max(variance, sigma_mps * sigma_mps + across.squaredNorm());
+  return state;
+}
+
+void TrackFilter::Show(const FilterSettings& settings, LocalTrack& track) const {
+  const ExtendedState state = is_vehicle_ ? vehicle_.Show() : ShowPoint(settings);
+  track.state_O = state.kinematic();
+  if (!settings.point_targets) {
+    // Where on its body a vehicle reflects is much the same from scan to scan: that error of the
+    // model does not average out, and the filter cannot see it.
+    const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
+    track.state_O.covariance.topLeftCorner<2, 2>() +=
+        kAlongFloor_m * kAlongFloor_m * forward * forward.transpose() +
+        kFloor_m * kFloor_m * Eigen::Matrix2d::Identity();
+  }
+  track.extent = state.extent();
+}
+
+Eigen::Vector2d TrackFilter::position_O() const {
+  return is_vehicle_ ? Eigen::Vector2d(vehicle_.best().mean.head<2>()) : point_.position();
+}
+
+Eigen::Vector2d TrackFilter::velocity_O() const {
+  if (!is_vehicle_) return point_.velocity();
+  const auto& mean = vehicle_.best().mean;
+  return mean[kSpeed] * Eigen::Vector2d(std::cos(mean[kYaw]), std::sin(mean[kYaw]));
+}
+
+Eigen::Matrix2d TrackFilter::position_covariance() const {
+  return is_vehicle_ ? vehicle_.position_covariance()
+                     : Eigen::Matrix2d(point_.covariance().topLeftCorner<2, 2>());
+}
+
+template std::optional<Likelihood> TrackFilter::Evaluate(const RadarLook&, const RadarMeasurement&,
+                                                         const FilterSettings&) const;
+template std::optional<Likelihood> TrackFilter::Evaluate(const CameraLook&,
+                                                         const CameraMeasurement&,
+                                                         const FilterSettings&) const;
+template bool TrackFilter::Update(const RadarLook&, const RadarMeasurement&, const FilterSettings&);
+template bool TrackFilter::Update(const CameraLook&, const CameraMeasurement&,
+                                  const FilterSettings&);
+
+}  // namespace v2vouch

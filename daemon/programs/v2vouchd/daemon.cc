@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/programs/v2vouchd/daemon.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "daemon/common/base/angle.h"
+#include "daemon/programs/v2vouchd/background_publisher.h"
+#include "daemon/programs/v2vouchd/foreign_outputs.h"
+#include "daemon/programs/v2vouchd/latency_meter.h"
+#include "daemon/programs/v2vouchd/message_queue.h"
+#include "daemon/programs/v2vouchd/receiver.h"
+#include "daemon/programs/v2vouchd/trust_keeper.h"
+#include "daemon/rim/engine/calibration_in_force.h"
+#include "daemon/rim/engine/engine.h"
+#include "daemon/rim/io/lcm_url.h"
+#include "daemon/rim/io/socket_figures.h"
+
+namespace v2vouch {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPopTimeout{20};
+constexpr std::chrono::seconds kHousekeeping{1};
+constexpr milliseconds kStatusAtLatest{1100};  // Where no message comes.
+constexpr int kMostRefusalLines = 20;          // Per second.
+constexpr milliseconds kSuspended{500};        // Between two turns of the loop.
+
+// Arrival on a clock that nobody sets.
+Timestamp ArrivalTime(Clock::time_point at) {
+  return Timestamp(std::chrono::duration_cast<Duration>(at.time_since_epoch()));
+}
+
+class Daemon {
+ public:
+  Daemon(const DaemonConfig& config, ObjectDetector* detector)
+      : config_(config),
+        engine_(config),
+        queue_(static_cast<std::size_t>(config.lcm.own_queue),
+               static_cast<std::size_t>(config.lcm.bsm_queue)),
+        detect_(engine_.decoder(), detector, queue_),
+        trust_(config.state, config.perception.vehicle.id),
+        background_(config.lcm.url) {
+    const bool has_own_v2v_bus = !config.lcm.v2v_url.empty();
+    ports_ = {LcmUdpPort(EffectiveLcmUrl(config.lcm.url))};
+    if (has_own_v2v_bus) ports_.push_back(LcmUdpPort(config.lcm.v2v_url));
+    std::vector<Receiver::Subscription> own;
+    std::vector<Receiver::Subscription> v2v;
+    for (const wire::InputChannel& channel : engine_.channels()) {
+      const bool is_bsm = channel.kind == wire::InputKind::kBsm;
+      (is_bsm && has_own_v2v_bus ? v2v : own).push_back({channel.name, SinkOf(channel)});
+    }
+    // Never an input: heard only to notice that somebody else sends them too.
+    for (const std::string* output : WatchedOutputs()) {
+      own.push_back({*output, [this](std::span<const std::uint8_t> bytes, std::size_t, Timestamp) {
+                       foreign_.Heard(bytes);
+                     }});
+    }
+    own_bus_ = std::make_unique<Receiver>(config.lcm.url, std::move(own));
+    if (has_own_v2v_bus) {
+      v2v_bus_ =
+          std::make_unique<Receiver>(config.lcm.v2v_url, std::move(v2v), Receiver::Priority::kLow);
+    }
+  }
+
+  DaemonSummary Run(const std::function<bool()>& must_stop) {
+    engine_.RestoreTrust(trust_.Load());
+    while (!must_stop() && !own_bus_->is_open()) {
+      ReportWaiting();
+      std::this_thread::sleep_for(kPopTimeout);
+    }
+    spdlog::info("event=started version={} inputs={}", V2VOUCH_VERSION, engine_.channels().size());
+    if (ports_.size() == 2 && ports_[0] == ports_[1] && ports_[0] != 0) {
+      spdlog::warn(
+          "event=v2v_url_shares_port port={} hint=\"another group on the same port separates "
+          "nothing; "
+          "give BSMs a port of their own\"",
+          ports_[0]);
+    }
+    LogCalibration();
+    engine_.Start(outbox_);
+    Publish();
+    last_list_ = last_status_ = last_housekeeping_ = last_tick_ = Clock::now();
+    while (!must_stop()) {
+      if (const auto arrival = queue_.Pop(kPopTimeout)) Take(*arrival);
+      OnTime(Clock::now());
+    }
+    trust_.Finish(engine_.TrustToKeep());
+    return Summary();
+  }
+
+ private:
+  LcmBus::Handler SinkOf(const wire::InputChannel& channel) {
+    return
+        [this, channel](std::span<const std::uint8_t> bytes, std::size_t size, Timestamp received) {
+          Arrival arrival;
+          arrival.channel = channel.name;
+          arrival.received = received;
+          arrival.arrived = Clock::now();
+          if (bytes.size() == size) {
+            arrival.content = Arrival::Bytes(bytes.begin(), bytes.end());
+          } else {
+            arrival.content = Refusal(Reason::kTooLarge);
+          }
+          if (channel.kind == wire::InputKind::kBsm) {
+            queue_.PushBsm(std::move(arrival));
+          } else if (channel.kind == wire::InputKind::kCameraImage) {
+            detect_.Offer(std::move(arrival));
+          } else {
+            queue_.PushOwn(std::move(arrival));
+          }
+        };
+  }
+
+  void Take(const Arrival& arrival) {
+    const auto started = Clock::now();
+    queue_wait_.Add(started - arrival.arrived);
+    outbox_.Clear();
+    if (const auto* bytes = std::get_if<Arrival::Bytes>(&arrival.content)) {
+      engine_.OnMessage(arrival.channel, *bytes, ArrivalTime(arrival.arrived), outbox_);
+    } else if (const auto* boxes = std::get_if<CameraDetections>(&arrival.content)) {
+      image_to_boxes_.Add(arrival.looked);
+      engine_.OnDetections(arrival.channel, *boxes, ArrivalTime(arrival.arrived), outbox_);
+    } else {
+      engine_.OnRefused(arrival.channel, std::get<Refusal>(arrival.content),
+                        ArrivalTime(arrival.arrived));
+    }
+    step_.Add(Clock::now() - started);
+    Publish();
+    if (engine_.has_lists()) {
+      const auto now = Clock::now();
+      input_to_list_.Add(now - arrival.arrived);
+      last_list_ = now;
+      stale_round_ = 0;
+      ++summary_.lists;
+    }
+  }
+
+  // Lists go on without frames, marked stale; a status comes even where no message does.
+  void OnTime(Clock::time_point now) {
+    // Who was not running cannot know what came meanwhile: it waits in the sockets.
+    if (now - last_tick_ > kSuspended) {
+      last_list_ = now;
+      stale_round_ = 0;
+    }
+    last_tick_ = now;
+    const Duration stale_after = FromSeconds(config_.perception.timeline.stale_after_s);
+    if (!queue_.has_own() && now - last_list_ >= stale_after * (stale_round_ + 1)) {
+      ++stale_round_;
+      outbox_.Clear();
+      engine_.PublishStale(std::chrono::duration_cast<Duration>(now - last_list_), outbox_);
+      if (!outbox_.messages().empty()) ++summary_.stale_lists;
+      Publish();
+    }
+    if (now - last_status_ >= kStatusAtLatest) {
+      outbox_.Clear();
+      engine_.AdvanceTo(ArrivalTime(now));
+      engine_.PublishStatus(outbox_);
+      Publish();
+    }
+    if (trust_.IsDue(now)) trust_.Keep(engine_.TrustToKeep(), now);
+    LogNotices();
+    if (now - last_housekeeping_ >= kHousekeeping) {
+      last_housekeeping_ = now;
+      RefreshFigures();
+      LogRefusals();
+      LogMounts();
+      ReportWaiting();
+    }
+  }
+
+  void Publish() {
+    for (const Outbox::Message& message : outbox_.messages()) {
+      const bool is_watched = std::ranges::any_of(
+          WatchedOutputs(), [&](const std::string* output) { return message.channel == *output; });
+      if (is_watched) foreign_.Sent(message.bytes);
+      if (message.channel == config_.lcm.channels.tracks_v2v) {
+        background_.Offer(message.channel, message.bytes);
+        continue;
+      }
+      own_bus_->Publish(message.channel, message.bytes);
+      if (message.channel == config_.lcm.channels.status) last_status_ = Clock::now();
+    }
+  }
+
+  // One of frames, one of time: enough to notice a second daemon in whatever state it is.
+  [[nodiscard]] std::array<const std::string*, 2> WatchedOutputs() const {
+    return {&config_.lcm.channels.tracks_local, &config_.lcm.channels.status};
+  }
+
+  // What the core cannot know. Each holds for the second in which it was seen.
+  std::vector<Notice> Notices() {
+    std::vector<Notice> notices;
+    const auto note = [&](NoticeKind kind, std::int64_t total, std::int64_t& before) {
+      if (total > before) {
+        notices.push_back(
+            {.kind = kind, .subject = {}, .value = static_cast<double>(total - before)});
+      }
+      before = total;
+    };
+    note(NoticeKind::kForeignOutputs, foreign_.count(), foreign_before_);
+    note(NoticeKind::kRadioFlood, queue_.bsm_drops(), bsm_drops_before_);
+    return notices;
+  }
+
+  void RefreshFigures() {
+    const SocketFigures sockets = ReadSocketFigures(ports_);
+    engine_.SetShellFigures({.queue_drops_own = queue_.own_drops(),
+                             .queue_drops_bsm = queue_.bsm_drops(),
+                             .images_replaced = detect_.replaced(),
+                             .kernel_drops = sockets.kernel_drops,
+                             .receive_buffer_bytes = sockets.receive_buffer_bytes,
+                             .latencies = {queue_wait_.Report(), step_.Report(),
+                                           input_to_list_.Report(), image_to_boxes_.Report()},
+                             .notices = Notices()});
+  }
+
+  // One line per channel, reason and field and second at most, and not too many in one second; the
+  // others have their turn in the next.
+  void LogRefusals() {
+    const std::vector<RefusalTable::Row>& rows = engine_.refusal_details();
+    logged_.resize(rows.size(), 0);
+    int lines = 0;
+    for (std::size_t n = 0; n < rows.size() && lines < kMostRefusalLines; ++n) {
+      const std::size_t i = next_refusal_ % rows.size();
+      ++next_refusal_;
+      const RefusalTable::Row& row = rows[i];
+      if (row.count == logged_[i]) continue;
+      spdlog::warn("event=refused channel={} reason={} field=\"{}\" count={} total={}", row.channel,
+                   ReasonName(row.refusal.reason), row.FieldText(), row.count - logged_[i],
+                   row.count);
+      logged_[i] = row.count;
+      ++lines;
+    }
+    const std::int64_t drops = queue_.own_drops() + queue_.bsm_drops();
+    if (drops != logged_drops_) {
+      spdlog::warn("event=queue_full own={} bsm={}", queue_.own_drops(), queue_.bsm_drops());
+      logged_drops_ = drops;
+    }
+  }
+
+  void LogCalibration() {
+    const auto count = [this](CalibrationVerdict verdict) {
+      return CountVerdicts(config_, verdict);
+    };
+    spdlog::info(
+        "event=calibration source=\"{}\" estimated={} weak={} prior={} at_bound={} rejected={}",
+        CalibrationTitle(config_), count(CalibrationVerdict::kEstimated),
+        count(CalibrationVerdict::kWeak), count(CalibrationVerdict::kPrior),
+        count(CalibrationVerdict::kAtBound), count(CalibrationVerdict::kRejected));
+  }
+
+  // One line when a radar is found turned, one when it sits right again.
+  void LogMounts() {
+    const std::vector<RadarConfig>& radars = config_.perception.vehicle.radars;
+    moved_.resize(radars.size(), false);
+    for (std::size_t i = 0; i < radars.size(); ++i) {
+      const MountVerdict& mount = engine_.mounts()[i];
+      if (mount.has_moved == moved_[i]) continue;
+      moved_[i] = mount.has_moved;
+      const double correction_deg = ToDegrees(mount.yaw_correction_rad);
+      const double sigma_deg = ToDegrees(mount.yaw_sigma_rad);
+      if (mount.has_moved) {
+        spdlog::warn(
+            "event=mount_moved sensor=radar_{} yaw_correction_deg={:.2f} sigma_deg={:.2f} "
+            "hint=\"check the mount and calibrate again\"",
+            SensorKey(radars[i].name), correction_deg, sigma_deg);
+      } else {
+        spdlog::info("event=mount_right sensor=radar_{} yaw_correction_deg={:.2f} sigma_deg={:.2f}",
+                     SensorKey(radars[i].name), correction_deg, sigma_deg);
+      }
+    }
+  }
+
+  void LogNotices() {
+    for (const NoticeBoard::Change& change : engine_.TakeNoticeChanges()) {
+      const wire::NoticeStatus& notice = change.notice;
+      if (change.has_begun) {
+        spdlog::warn("event={} channel={} value={:.3f} hint=\"{}\"", notice.name, notice.channel,
+                     notice.value, notice.advice);
+      } else {
+        spdlog::info("event={}_ended channel={}", notice.name, notice.channel);
+      }
+    }
+  }
+
+  void ReportWaiting() {
+    Report(*own_bus_, config_.lcm.url, reported_failures_);
+    if (v2v_bus_) Report(*v2v_bus_, config_.lcm.v2v_url, reported_v2v_failures_);
+  }
+
+  static void Report(const Receiver& bus, const std::string& url, int& reported) {
+    const int failures = bus.failures();
+    if (bus.is_open() || failures == 0 || failures == reported) return;
+    spdlog::warn("event=no_lcm url=\"{}\" attempt={} hint=\"is there a multicast route?\"", url,
+                 failures);
+    reported = failures;
+  }
+
+  DaemonSummary Summary() {
+    summary_.accepted = engine_.accepted();
+    summary_.withheld_lists = engine_.withheld();
+    summary_.queue_drops_own = queue_.own_drops();
+    summary_.queue_drops_bsm = queue_.bsm_drops();
+    summary_.refused = engine_.refusals();
+    summary_.refused[static_cast<std::size_t>(Reason::kImageReplaced)] +=
+        static_cast<std::uint64_t>(detect_.replaced());
+    summary_.digest_local = engine_.digest_local();
+    summary_.digest_priority = engine_.digest_priority();
+    return summary_;
+  }
+
+  DaemonConfig config_;
+  Engine engine_;
+  Outbox outbox_;
+  MessageQueue queue_;
+  DetectThread detect_;
+  TrustKeeper trust_;
+  BackgroundPublisher background_;
+  LatencyMeter queue_wait_{"queue_wait"};
+  LatencyMeter step_{"step"};
+  LatencyMeter input_to_list_{"input_to_list"};  // From the network: its boxes to the list.
+  LatencyMeter image_to_boxes_{"image_to_boxes"};
+  DaemonSummary summary_;
+  std::vector<std::uint64_t> logged_;  // Of each row of refusals, what the log has.
+  std::size_t next_refusal_ = 0;
+  std::int64_t logged_drops_ = 0;
+  int reported_failures_ = 0;
+  int reported_v2v_failures_ = 0;
+  ForeignOutputs foreign_;
+  std::int64_t foreign_before_ = 0;
+  std::int64_t bsm_drops_before_ = 0;
+  std::vector<int> ports_;  // That we receive on.
+  std::vector<bool> moved_;
+  int stale_round_ = 0;
+  Clock::time_point last_list_{};
+  Clock::time_point last_tick_{};
+  Clock::time_point last_status_{};
+  Clock::time_point last_housekeeping_{};
+  // Last, so that they stop before anything they push into is gone.
+  std::unique_ptr<Receiver> own_bus_;
+  std::unique_ptr<Receiver> v2v_bus_;
+};
+
+}  // namespace
+
+DaemonSummary RunDaemon(const DaemonConfig& config, ObjectDetector* detector,
+                        const std::function<bool()>& must_stop) {
+  return Daemon(config, detector).Run(must_stop);
+}
+
+}  // namespace v2vouch

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/rim/io/lcm_bus.h"
+
+#include <lcm/lcm.h>
+
+#include <string_view>
+#include <utility>
+
+#include "daemon/rim/io/event_log.h"
+#include "daemon/rim/io/lcm_url.h"
+
+namespace v2vouch {
+namespace {
+
+// Beyond what waits in ours: the receive thread drains at once, so this only has to bridge a
+// moment.
+constexpr int kLiblcmQueue = 10'000;
+
+std::string Escaped(const std::string& name) {
+  std::string pattern;
+  for (const char c : name) {
+    if (std::string_view(".[]()*+?{}^$|\\").find(c) != std::string_view::npos) pattern += '\\';
+    pattern += c;
+  }
+  return pattern;
+}
+
+}  // namespace
+
+struct LcmBus::Subscription {
+  Handler handler;
+};
+
+namespace {
+
+// Called from C. The channel's name is not looked at: for a bare header it is that of an older
+// message.
+void OnReceive(const lcm_recv_buf_t* buffer, const char*, void* user) {
+  const auto* subscription = static_cast<const LcmBus::Subscription*>(user);
+  const std::size_t size = buffer->data_size;
+  std::span<const std::uint8_t> bytes;
+  if (size <= kMaxEventBytes) bytes = {static_cast<const std::uint8_t*>(buffer->data), size};
+  try {
+    subscription->handler(bytes, size, FromMicros(buffer->recv_utime));
+  } catch (...) {
+    // Out of memory at most. The message is lost; liblcm must not be left by an exception, or its
+    // next call asserts.
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<LcmBus> LcmBus::Open(const std::string& url) {
+  if (!LcmUrlProblems(EffectiveLcmUrl(url)).empty()) return nullptr;
+  lcm_t* lcm = lcm_create(url.empty() ? nullptr : url.c_str());
+  if (lcm == nullptr) return nullptr;
+  return std::unique_ptr<LcmBus>(new LcmBus(lcm));
+}
+
+LcmBus::LcmBus(lcm_t* lcm) : lcm_(lcm) {}
+
+LcmBus::~LcmBus() { lcm_destroy(lcm_); }
+
+bool LcmBus::Subscribe(const std::string& channel, Handler handler) {
+  auto subscription = std::make_unique<Subscription>(Subscription{std::move(handler)});
+  lcm_subscription_t* taken =
+      lcm_subscribe(lcm_, Escaped(channel).c_str(), OnReceive, subscription.get());
+  if (taken == nullptr) return false;
+  lcm_subscription_set_queue_capacity(taken, kLiblcmQueue);
+  subscriptions_.push_back(std::move(subscription));
+  return true;
+}
+
+bool LcmBus::Handle(int timeout_ms) { return lcm_handle_timeout(lcm_, timeout_ms) >= 0; }
+
+bool LcmBus::Publish(const std::string& channel, std::span<const std::uint8_t> bytes) {
+  return lcm_publish(lcm_, channel.c_str(), bytes.data(),
+                     static_cast<unsigned int>(bytes.size())) == 0;
+}
+
+}  // namespace v2vouch

@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/metrics/tgospa.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "daemon/common/assignment/assignment.h"
+#include "daemon/common/base/check.h"
+#include "sim/metrics/gospa.h"
+
+namespace v2vouch::evaluation {
+namespace {
+
+/// Per truth of the cluster its track's position in the cluster, or -1.
+using Matching = std::vector<int>;
+
+bool Exists(const Eigen::Vector2d& p) { return !std::isnan(p.x()); }
+
+struct Costs {
+  double pair_max = 0.0;  // c^p
+  double lone = 0.0;      // c^p / 2
+  double full = 0.0;      // gamma^p
+};
+
+/// Everything a cluster needs: its members and d^p of every pair it may use at every step.
+struct Cluster {
+  std::vector<std::size_t> truths, tracks;
+  std::vector<char> allowed;  // truths x tracks: ever closer than c
+  std::vector<int> present;   // Tracks that exist, per step.
+};
+
+class Problem {
+ public:
+  Problem(const std::vector<Trajectory>& truths, const std::vector<Trajectory>& tracks,
+          const TrajectoryGospaParameters& parameters)
+      : truths_(truths), tracks_(tracks), parameters_(parameters) {
+    const double c_pow = std::pow(parameters.cutoff_m, parameters.order);
+    costs_ = {c_pow, c_pow / 2.0, std::pow(parameters.switch_m, parameters.order)};
+    steps_ = truths.empty() ? (tracks.empty() ? 0 : tracks.front().size()) : truths.front().size();
+  }
+
+  [[nodiscard]] std::size_t steps() const { return steps_; }
+  [[nodiscard]] const Costs& costs() const { return costs_; }
+
+  /// d^p of a pair with both present, otherwise infinity.
+  [[nodiscard]] double PairPower(std::size_t truth, std::size_t track, std::size_t t) const {
+    const Eigen::Vector2d& x = truths_[truth][t];
+    const Eigen::Vector2d& y = tracks_[track][t];
+    if (!Exists(x) || !Exists(y)) return kForbidden;
+    const Eigen::Vector2d d = (x - y).cwiseAbs();
+    if (parameters_.base == BaseDistance::kEuclidean) return std::pow(d.norm(), parameters_.order);
+    return std::pow(d.x(), parameters_.order) + std::pow(d.y(), parameters_.order);
+  }
+  [[nodiscard]] bool TruthExists(std::size_t truth, std::size_t t) const {
+    return Exists(truths_[truth][t]);
+  }
+  [[nodiscard]] bool TrackExists(std::size_t track, std::size_t t) const {
+    return Exists(tracks_[track][t]);
+  }
+
+  /// Connected components of the "ever closer than c" graph. Members without a partner are in no
+  /// cluster: they are missed or false at every step they exist.
+  [[nodiscard]] std::vector<Cluster> Clusters() const {
+    const std::size_t n = truths_.size();
+    const std::size_t m = tracks_.size();
+    std::vector<char> close(n * m, 0);
+    std::vector<std::size_t> parent(n + m);
+    std::iota(parent.begin(), parent.end(), std::size_t{0});
+    const auto root = [&](std::size_t v) {
+      while (parent[v] != v) v = parent[v] = parent[parent[v]];
+      return v;
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < m; ++j) {
+        for (std::size_t t = 0; t < steps_ && !close[i * m + j]; ++t) {
+          if (PairPower(i, j, t) < costs_.pair_max) close[i * m + j] = 1;
+        }
+        if (close[i * m + j]) parent[root(n + j)] = root(i);
+      }
+    }
+    std::vector<Cluster> clusters;
+    for (std::size_t r = 0; r < n + m; ++r) {
+      if (root(r) != r) continue;
+      Cluster cluster;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (root(i) == r) cluster.truths.push_back(i);
+      }
+      for (std::size_t j = 0; j < m; ++j) {
+        if (root(n + j) == r) cluster.tracks.push_back(j);
+      }
+      for (const std::size_t i : cluster.truths) {
+        for (const std::size_t j : cluster.tracks) cluster.allowed.push_back(close[i * m + j]);
+      }
+      cluster.present.assign(steps_, 0);
+      for (const std::size_t j : cluster.tracks) {
+        for (std::size_t t = 0; t < steps_; ++t) cluster.present[t] += TrackExists(j, t) ? 1 : 0;
+      }
+      clusters.push_back(std::move(cluster));
+    }
+    return clusters;
+  }
+
+  /// Adds one step of a matching to `sum` and returns its cost.
+  double AddStep(const Cluster& cluster, const Matching& matching, std::size_t t,
+                 TrajectoryGospaResult* sum) const {
+    double localisation = 0.0;
+    int missed = 0;
+    int false_tracks = cluster.present[t];
+    for (std::size_t a = 0; a < cluster.truths.size(); ++a) {
+      const bool exists = TruthExists(cluster.truths[a], t);
+      missed += exists ? 1 : 0;
+      if (!exists || matching[a] < 0) continue;
+      const double d =
+          PairPower(cluster.truths[a], cluster.tracks[static_cast<std::size_t>(matching[a])], t);
+      if (!(d < costs_.pair_max)) continue;
+      localisation += d;
+      --missed;
+      --false_tracks;
+    }
+    if (sum != nullptr) {
+      sum->localisation_pow += localisation;
+      sum->missed_pow += missed * costs_.lone;
+      sum->false_pow += false_tracks * costs_.lone;
+    }
+    return localisation + (missed + false_tracks) * costs_.lone;
+  }
+
+  [[nodiscard]] double SwitchCost(const Matching& from, const Matching& to) const {
+    double cost = 0.0;
+    for (std::size_t a = 0; a < from.size(); ++a) {
+      if (from[a] == to[a]) continue;
+      cost += from[a] >= 0 && to[a] >= 0 ? costs_.full : costs_.full / 2.0;
+    }
+    return cost;
+  }
+
+ private:
+  const std::vector<Trajectory>& truths_;
+  const std::vector<Trajectory>& tracks_;
+  const TrajectoryGospaParameters& parameters_;
+  Costs costs_;
+  std::size_t steps_ = 0;
+};
+
+/// All partial matchings over the allowed pairs, in lexicographic order; stops past `limit`.
+void Enumerate(const Cluster& cluster, std::size_t limit, Matching& current, std::size_t a,
+               std::vector<char>& used, std::vector<Matching>& out) {
+  if (out.size() > limit) return;
+  if (a == cluster.truths.size()) {
+    out.push_back(current);
+    return;
+  }
+  current[a] = -1;
+  Enumerate(cluster, limit, current, a + 1, used, out);
+  for (std::size_t b = 0; b < cluster.tracks.size(); ++b) {
+    if (used[b] || !cluster.allowed[a * cluster.tracks.size() + b]) continue;
+    used[b] = 1;
+    current[a] = static_cast<int>(b);
+    Enumerate(cluster, limit, current, a + 1, used, out);
+    used[b] = 0;
+  }
+  current[a] = -1;
+}
+
+std::vector<Matching> ExactPath(const Problem& problem, const Cluster& cluster,
+                                const std::vector<Matching>& states) {
+  const std::size_t count = states.size();
+  std::vector<double> transition(count * count);
+  for (std::size_t from = 0; from < count; ++from) {
+    for (std::size_t to = 0; to < count; ++to) {
+      transition[to * count + from] = problem.SwitchCost(states[from], states[to]);
+    }
+  }
+  std::vector<double> best(count), next(count);
+  std::vector<std::uint16_t> back(problem.steps() * count, 0);
+  for (std::size_t s = 0; s < count; ++s) best[s] = problem.AddStep(cluster, states[s], 0, nullptr);
+  for (std::size_t t = 1; t < problem.steps(); ++t) {
+    for (std::size_t to = 0; to < count; ++to) {
+      std::size_t argument = 0;
+      double value = best[0] + transition[to * count];
+      for (std::size_t from = 1; from < count; ++from) {
+        const double candidate = best[from] + transition[to * count + from];
+        if (candidate < value) {
+          value = candidate;
+          argument = from;
+        }
+      }
+      next[to] = value + problem.AddStep(cluster, states[to], t, nullptr);
+      back[t * count + to] = static_cast<std::uint16_t>(argument);
+    }
+    best.swap(next);
+  }
+  auto state = static_cast<std::size_t>(std::min_element(best.begin(), best.end()) - best.begin());
+  std::vector<Matching> path(problem.steps());
+  for (std::size_t t = problem.steps(); t-- > 0;) {
+    path[t] = states[state];
+    state = back[t * count + state];
+  }
+  return path;
+}
+
+class Beam {
+ public:
+  Beam(const Problem& problem, const Cluster& cluster, std::size_t width)
+      : problem_(problem), cluster_(cluster), width_(width) {}
+
+  std::vector<Matching> Path() {
+    struct Node {
+      Matching matching;
+      std::size_t parent;
+      double cost;
+    };
+    std::vector<std::vector<Node>> layers(problem_.steps());
+    for (std::size_t t = 0; t < problem_.steps(); ++t) {
+      std::vector<Node> candidates;
+      const auto consider = [&](Matching matching, std::size_t parent) {
+        double cost = problem_.AddStep(cluster_, matching, t, nullptr);
+        if (t > 0) {
+          const Node& before = layers[t - 1][parent];
+          cost += before.cost + problem_.SwitchCost(before.matching, matching);
+        }
+        candidates.push_back({std::move(matching), parent, cost});
+      };
+      const Matching free = BestSuccessor(nullptr, t);
+      if (t == 0) {
+        consider(free, 0);
+        consider(Matching(cluster_.truths.size(), -1), 0);
+      }
+      for (std::size_t k = 0; t > 0 && k < layers[t - 1].size(); ++k) {
+        consider(free, k);
+        consider(layers[t - 1][k].matching, k);
+        consider(BestSuccessor(&layers[t - 1][k].matching, t), k);
+      }
+      std::sort(candidates.begin(), candidates.end(), [](const Node& a, const Node& b) {
+        return a.matching != b.matching ? a.matching < b.matching
+                                        : std::pair(a.cost, a.parent) < std::pair(b.cost, b.parent);
+      });
+      candidates.erase(
+          std::unique(candidates.begin(), candidates.end(),
+                      [](const Node& a, const Node& b) { return a.matching == b.matching; }),
+          candidates.end());
+      std::stable_sort(candidates.begin(), candidates.end(),
+                       [](const Node& a, const Node& b) { return a.cost < b.cost; });
+      if (candidates.size() > width_) candidates.resize(width_);
+      layers[t] = std::move(candidates);
+    }
+    std::vector<Matching> path(problem_.steps());
+    std::size_t k = 0;
+    for (std::size_t t = problem_.steps(); t-- > 0;) {
+      path[t] = layers[t][k].matching;
+      k = layers[t][k].parent;
+    }
+    return path;
+  }
+
+ private:
+  /// The matching of step t that is cheapest after `before`: switching costs are a sum over
+  /// truths, so they go into the assignment's own costs. Null: as if switching were free.
+  Matching BestSuccessor(const Matching* before, std::size_t t) {
+    const std::size_t n = cluster_.truths.size();
+    const std::size_t m = cluster_.tracks.size();
+    const Costs& costs = problem_.costs();
+    const auto switch_cost = [&](std::size_t a, int to) {
+      if (before == nullptr || (*before)[a] == to) return 0.0;
+      return (*before)[a] >= 0 && to >= 0 ? costs.full : costs.full / 2.0;
+    };
+    // Tracks that are neither here now nor held before gain nothing: leave them out.
+    columns_.clear();
+    for (std::size_t b = 0; b < m; ++b) {
+      const bool is_held = before != nullptr && std::find(before->begin(), before->end(),
+                                                          static_cast<int>(b)) != before->end();
+      if (is_held || problem_.TrackExists(cluster_.tracks[b], t)) columns_.push_back(b);
+    }
+    cost_.assign(n * columns_.size(), kForbidden);
+    lone_.assign(n, 0.0);
+    for (std::size_t a = 0; a < n; ++a) {
+      lone_[a] = switch_cost(a, -1);
+      for (std::size_t k = 0; k < columns_.size(); ++k) {
+        const std::size_t b = columns_[k];
+        if (!cluster_.allowed[a * m + b]) continue;
+        // Relative to both staying alone, which is a constant of the step.
+        const double d = problem_.PairPower(cluster_.truths[a], cluster_.tracks[b], t);
+        const double gain = d < costs.pair_max ? d - costs.pair_max : 0.0;
+        cost_[a * columns_.size() + k] = gain + switch_cost(a, static_cast<int>(b));
+      }
+    }
+    const auto solution = solver_.Solve(cost_, n, columns_.size(), lone_);
+    Matching matching(n, -1);
+    for (std::size_t a = 0; a < n; ++a) {
+      if (solution[a] >= 0) {
+        matching[a] = static_cast<int>(columns_[static_cast<std::size_t>(solution[a])]);
+      }
+    }
+    return matching;
+  }
+
+  const Problem& problem_;
+  const Cluster& cluster_;
+  std::size_t width_;
+  AssignmentSolver solver_;
+  std::vector<double> cost_, lone_;
+  std::vector<std::size_t> columns_;
+};
+
+/// Improves a path truth by truth: with the others' matchings fixed, one truth's best sequence over
+/// the tracks they leave free is a small shortest path. The beam looks one step ahead only; this
+/// looks over the whole run. Never makes the path dearer.
+void Refine(const Problem& problem, const Cluster& cluster, std::vector<Matching>& path) {
+  constexpr int kRounds = 8;
+  const std::size_t m = cluster.tracks.size();
+  const Costs& costs = problem.costs();
+  std::vector<double> best(m + 1), next(m + 1);  // Index m: no track.
+  std::vector<std::size_t> back(path.size() * (m + 1));
+  std::vector<char> taken(m);
+  const auto to_index = [&](int track) { return track < 0 ? m : static_cast<std::size_t>(track); };
+
+  for (int round = 0; round < kRounds; ++round) {
+    bool has_changed = false;
+    for (std::size_t a = 0; a < cluster.truths.size(); ++a) {
+      for (std::size_t t = 0; t < path.size(); ++t) {
+        std::fill(taken.begin(), taken.end(), 0);
+        for (std::size_t other = 0; other < path[t].size(); ++other) {
+          if (other != a && path[t][other] >= 0) taken[to_index(path[t][other])] = 1;
+        }
+        // From the cheapest state by a full switch, from none by half a one, or no change.
+        std::size_t cheapest = m;
+        for (std::size_t b = 0; b < m; ++b) {
+          if (best[b] < best[cheapest]) cheapest = b;
+        }
+        for (std::size_t b = 0; b <= m; ++b) {
+          double value = kForbidden;
+          if (b == m || (!taken[b] && cluster.allowed[a * m + b])) {
+            double step = 0.0;
+            if (b < m) {
+              const double d = problem.PairPower(cluster.truths[a], cluster.tracks[b], t);
+              if (d < costs.pair_max) step = d - costs.pair_max;
+            }
+            value = step;
+            if (t > 0) {
+              std::size_t from = b;
+              double before = best[b];
+              const double jump = b == m ? costs.full / 2.0 : costs.full;
+              if (best[cheapest] + jump < before && cheapest != m) {
+                from = cheapest;
+                before = best[cheapest] + jump;
+              }
+              if (best[m] + costs.full / 2.0 < before && b != m) {
+                from = m;
+                before = best[m] + costs.full / 2.0;
+              }
+              value += before;
+              back[t * (m + 1) + b] = from;
+            }
+          }
+          next[b] = value;
+        }
+        best.swap(next);
+      }
+      auto state =
+          static_cast<std::size_t>(std::min_element(best.begin(), best.end()) - best.begin());
+      double old_cost = 0.0;
+      for (std::size_t t = 0; t < path.size(); ++t) {
+        const int b = path[t][a];
+        if (b >= 0) {
+          const double d = problem.PairPower(cluster.truths[a], cluster.tracks[to_index(b)], t);
+          if (d < costs.pair_max) old_cost += d - costs.pair_max;
+        }
+        if (t > 0 && path[t - 1][a] != b) {
+          old_cost += path[t - 1][a] >= 0 && b >= 0 ? costs.full : costs.full / 2.0;
+        }
+      }
+      if (!(best[state] < old_cost - 1e-9)) continue;
+      has_changed = true;
+      for (std::size_t t = path.size(); t-- > 0;) {
+        path[t][a] = state == m ? -1 : static_cast<int>(state);
+        state = back[t * (m + 1) + state];
+      }
+    }
+    if (!has_changed) return;
+  }
+}
+
+}  // namespace
+
+TrajectoryGospaResult TrajectoryGospa(const std::vector<Trajectory>& truths,
+                                      const std::vector<Trajectory>& tracks,
+                                      const TrajectoryGospaParameters& parameters) {
+  const Problem problem(truths, tracks, parameters);
+  for (const auto& trajectory : truths) V2VOUCH_CHECK(trajectory.size() == problem.steps());
+  for (const auto& trajectory : tracks) V2VOUCH_CHECK(trajectory.size() == problem.steps());
+  const std::size_t limit = std::min<std::size_t>(parameters.exact_states, UINT16_MAX);
+
+  TrajectoryGospaResult result;
+  for (const Cluster& cluster : problem.Clusters()) {
+    std::vector<Matching> states;
+    Matching current(cluster.truths.size(), -1);
+    std::vector<char> used(cluster.tracks.size(), 0);
+    Enumerate(cluster, limit, current, 0, used, states);
+    const bool is_small = states.size() <= limit;
+    std::vector<Matching> path = is_small ? ExactPath(problem, cluster, states)
+                                          : Beam(problem, cluster, parameters.beam).Path();
+    if (!is_small) Refine(problem, cluster, path);
+    result.is_exact = result.is_exact && is_small;
+    for (std::size_t t = 0; t < path.size(); ++t) {
+      problem.AddStep(cluster, path[t], t, &result);
+      if (t > 0) result.switch_pow += problem.SwitchCost(path[t - 1], path[t]);
+    }
+  }
+  result.power = result.localisation_pow + result.missed_pow + result.false_pow + result.switch_pow;
+  result.tgospa = Root(result.power, parameters.order);
+  return result;
+}
+
+}  // namespace v2vouch::evaluation

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "daemon/rim/io/lcm_url.h"
+#include "daemon/rim/io/std_streams.h"
+#include "daemon/rim/program/command_line.h"
+#include "sim/annotation/annotate_log.h"
+#include "sim/behaviour/evaluation.h"
+#include "sim/report/report.h"
+#include "sim/spoofing/spoof_json.h"
+
+namespace {
+
+constexpr int kGood = 0;
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  v2vouch-eval OUT.lcm                        table of all figures and gates\n"
+    "  v2vouch-eval OUT.lcm --json --cutoff 30     the same for programs\n"
+    "  v2vouch-eval OUT.lcm --report report/       report/index.html, one file\n"
+    "  v2vouch-eval OUT.lcm --paper OUT_PAPER.lcm --report report/\n"
+    "  v2vouch-eval OUT.lcm --spoof                how lies fared, and the honest; wants "
+    "TRUTH_BSM\n"
+    "                                              and `v2v.message_verdicts: true` in the replay\n"
+    "  v2vouch-eval drive.lcm --summary            a real drive: counts, no truth needed\n"
+    "\n"
+    "Exit codes: 0 good; 1 the log cannot be read or judged (no TRUTH, no lists, no overlap, a "
+    "step of\n"
+    "time), or with --gates a gate is missed; 2 usage.";
+
+int Complain(const std::string& what) {
+  std::fprintf(stderr, "v2vouch-eval: %s\n", what.c_str());
+  return kFailed;
+}
+
+/// Shows the share done on a terminal; says nothing elsewhere.
+std::function<void(double)> Progress(const char* what) {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [what](double share) {
+    std::fprintf(stderr, "\r%s %3.0f %%%s", what, 100.0 * share, share >= 1.0 ? "\n" : "");
+  };
+}
+
+bool Load(const std::string& path, v2vouch::evaluation::RunLog& log,
+          v2vouch::evaluation::ReadScope scope = v2vouch::evaluation::ReadScope::kAll) {
+  std::string error;
+  if (v2vouch::evaluation::ReadRunLog(path, Progress("reading"), log, error, scope)) return true;
+  std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());
+  return false;
+}
+
+// A few frames of the first camera, where the log has its pictures.
+std::vector<v2vouch::evaluation::ReportPicture> PicturesOf(const std::string& log) {
+  constexpr int kPictures = 6;
+  v2vouch::sim::AnnotationRequest request;
+  request.log = log;
+  request.at_most = kPictures;
+  v2vouch::sim::AnnotationResult result;
+  std::vector<v2vouch::evaluation::ReportPicture> pictures;
+  std::string ignored;  // A log without camera has no such pictures; nothing is wrong with that.
+  const auto take = [&](v2vouch::Timestamp, const cv::Mat& picture) {
+    if (!result.has_images) return false;
+    v2vouch::evaluation::ReportPicture taken;
+    taken.caption = "frame " + std::to_string(result.pictures) + " of the report";
+    cv::imencode(".jpg", picture, taken.jpeg);
+    pictures.push_back(std::move(taken));
+    return true;
+  };
+  v2vouch::sim::AnnotateLog(request, take, result, ignored);
+  return pictures;
+}
+
+int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
+  using namespace v2vouch::evaluation;
+  RunLog log;
+  if (!Load(path, log, ReadScope::kSpoof)) return kFailed;
+  if (const std::string why = WhyNotJudged(log); !log.truth.empty() && !why.empty()) {
+    return Complain(path + ": " + why);
+  }
+  const char* missing = log.truth.empty()        ? "TRUTH"
+                        : log.bsm_truths.empty() ? "TRUTH_BSM"
+                        : log.bsm_verdicts.empty()
+                            ? "BSM_VERDICT (set `v2v.message_verdicts: true`)"
+                            : nullptr;
+  if (missing != nullptr) {
+    std::fprintf(stderr, "v2vouch-eval: %s holds no %s, so spoofing cannot be judged.\n",
+                 path.c_str(), missing);
+    return kFailed;
+  }
+  const SpoofRun run = JudgeSpoof(log, with_message_checks);
+  std::fputs((as_json ? SpoofJson(run) : SpoofTable(run)).c_str(), stdout);
+  return kGood;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-eval");
+  using namespace v2vouch::evaluation;
+  CLI::App app(
+      "Judges a recorded run against its truth: GOSPA with all parts, bound, gates, report.");
+  app.footer(kExamples);
+  std::string log_path, paper_path, report_folder, lcm_url;
+  ScoringSettings settings;
+  bool as_json = false, summary = false, use_gates = false, spoof = false, message_checks = false;
+  app.add_option("LOG", log_path, "Recorded run: outputs of the daemon or v2vouch-replay")
+      ->required();
+  app.add_option("--paper", paper_path, "The same run with `association: paper`, shown beside");
+  app.add_option("--report", report_folder, "Folder for index.html (made if absent)");
+  app.add_option("--cutoff", settings.cutoff_m, "GOSPA cutoff c [m]")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  app.add_option("--switching-penalty", settings.switching_m,
+                 "Switching penalty [m]; default half the cutoff")
+      ->check(CLI::Range(0.0, 1000.0));
+  app.add_flag("--json", as_json, "Figures as JSON on standard output");
+  app.add_flag("--summary", summary, "Counts and lengths of the lists only; needs no truth");
+  app.add_flag("--gates", use_gates, "Exit code 1 when a gate is missed");
+  auto* of_spoof = app.add_flag("--spoof", spoof, "Spoof resistance instead of tracking accuracy");
+  app.add_flag("--message-checks", message_checks,
+               "With --spoof: message-only checks of the published kind on the same messages")
+      ->needs(of_spoof);
+  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network")
+      ->check(v2vouch::CheckLcmUrl);
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-eval", argc, argv)) return *code;
+
+  if (spoof) return JudgeLies(log_path, message_checks, as_json);
+  RunLog log;
+  if (!Load(log_path, log)) return kFailed;
+  if (summary) {
+    std::fputs((as_json ? ListSummaryJson(log) : ListSummary(log)).c_str(), stdout);
+    const bool has_lists =
+        std::ranges::any_of(log.lists, [](const auto& lists) { return !lists.empty(); });
+    if (has_lists) return kGood;
+    return Complain(log_path + ": holds no track lists; `v2vouch-replay LOG --out OUT` makes them");
+  }
+  if (const std::string why = WhyNotJudged(log); !why.empty()) {
+    return Complain(log_path + ": " + why);
+  }
+  const auto evaluation = Evaluate(std::move(log), settings);
+  std::unique_ptr<Evaluation> paper;
+  if (!paper_path.empty()) {
+    RunLog paper_log;
+    if (!Load(paper_path, paper_log)) return kFailed;
+    if (const std::string why = WhyNotJudged(paper_log); !why.empty()) {
+      return Complain(paper_path + ": " + why);
+    }
+    paper = Evaluate(std::move(paper_log), settings);
+  }
+  if (!report_folder.empty()) {
+    std::string error;
+    const std::string file =
+        WriteReport(report_folder, *evaluation, paper.get(), PicturesOf(log_path), error);
+    if (file.empty()) {
+      std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());
+      return kFailed;
+    }
+    std::fprintf(stderr, "report: %s\n", file.c_str());
+  }
+  const std::string figures =
+      as_json ? ToJson(*evaluation, paper.get()) : ToTable(*evaluation, paper.get());
+  std::fputs(figures.c_str(), stdout);
+  if (use_gates) {
+    for (const Gate& gate : evaluation->gates) {
+      if (!gate.passes()) return kFailed;
+    }
+  }
+  return kGood;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/behaviour/evaluation.h"
+
+namespace v2vouch::evaluation {
+
+/// A camera picture with what was seen and tracked drawn in, for the report.
+struct ReportPicture {
+  std::string caption;
+  std::vector<std::uint8_t> jpeg;
+};
+
+/// The report as one self-contained HTML page: no script, no outside file, no date; the same run
+/// gives the same bytes. `paper` is the same run with the paper's association, or null;
+/// `pictures` stand inside the page.
+std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
+                       const std::vector<ReportPicture>& pictures = {});
+
+/// Writes ReportHtml() to `folder`/index.html, making the folder.
+/// @return the file's path, or empty with `error` set.
+std::string WriteReport(const std::string& folder, const Evaluation& evaluation,
+                        const Evaluation* paper, const std::vector<ReportPicture>& pictures,
+                        std::string& error);
+
+}  // namespace v2vouch::evaluation

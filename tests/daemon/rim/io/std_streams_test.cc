@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/rim/io/std_streams.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <thread>
+
+#include "daemon/rim/io/stop_signal.h"
+
+namespace v2vouch {
+namespace {
+
+// Exit code of a child that runs `body` and ends by exit(); -1 where a signal ended it.
+int ExitCodeOf(const std::function<int()>& body) {
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  if (child == 0) std::exit(body());
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+void PointAt(int stream, const char* path) {
+  const int opened = open(path, O_WRONLY);
+  dup2(opened, stream);
+  close(opened);
+}
+
+TEST(StandardStreams, ResultsThatStandardOutputDoesNotTakeAreAFailure) {
+  const auto print_into = [](const std::function<void()>& arrange, int code) {
+    return ExitCodeOf([&] {
+      arrange();
+      GuardStandardStreams("test");
+      PointAt(STDERR_FILENO, "/dev/null");
+      std::printf("figures\n");
+      std::cout << "more of them\n";
+      return code;
+    });
+  };
+  EXPECT_EQ(print_into([] { PointAt(STDOUT_FILENO, "/dev/null"); }, 0), 0);
+  EXPECT_EQ(print_into([] { PointAt(STDOUT_FILENO, "/dev/full"); }, 0), 1);
+  EXPECT_EQ(print_into([] { close(STDOUT_FILENO); }, 0), 1);
+  EXPECT_EQ(print_into([] { PointAt(STDOUT_FILENO, "/dev/full"); }, 2), 2);
+  const auto closed_pipe = [] {
+    int ends[2];
+    if (pipe(ends) != 0) std::abort();
+    dup2(ends[1], STDOUT_FILENO);
+    close(ends[0]);
+    close(ends[1]);
+  };
+  EXPECT_EQ(print_into(closed_pipe, 0), 1);
+}
+
+TEST(StandardStreams, AProgramThatPrintsNothingDoesNotMindAClosedOutput) {
+  EXPECT_EQ(ExitCodeOf([] {
+              close(STDOUT_FILENO);
+              GuardStandardStreams("test");
+              return 0;
+            }),
+            0);
+}
+
+// Else what is meant for people would be written into the first file opened.
+TEST(StandardStreams, NoFileGetsTheNumberOfAClosedStream) {
+  EXPECT_EQ(ExitCodeOf([] {
+              close(STDIN_FILENO);
+              close(STDOUT_FILENO);
+              close(STDERR_FILENO);
+              GuardStandardStreams("test");
+              return open("/dev/null", O_WRONLY) > STDERR_FILENO ? 0 : 3;
+            }),
+            0);
+}
+
+TEST(StopSignal, EndsAProgramThatDoesNotLookForIt) {
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_EQ(ExitCodeOf([] {
+              PointAt(STDERR_FILENO, "/dev/null");
+              HandleStopSignals();
+              raise(SIGTERM);
+              if (!IsStopAsked()) return 3;
+              for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+              return 0;
+            }),
+            1);
+  const auto took = std::chrono::steady_clock::now() - before;
+  EXPECT_GT(took, std::chrono::milliseconds(500));
+  EXPECT_LT(took, std::chrono::milliseconds(2000));
+}
+
+TEST(StopSignal, ASecondRequestEndsAtOnce) {
+  EXPECT_EQ(ExitCodeOf([] {
+              PointAt(STDERR_FILENO, "/dev/null");
+              HandleStopSignals();
+              raise(SIGINT);
+              raise(SIGINT);
+              return 0;
+            }),
+            1);
+}
+
+}  // namespace
+}  // namespace v2vouch
