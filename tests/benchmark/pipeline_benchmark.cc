@@ -156,7 +156,7 @@ BENCHMARK(BM_GpsBiasSolve)->Arg(1)->Arg(8)->Arg(32)->Unit(benchmark::kMillisecon
 
 // LOCAL after two seconds of a drive, and the inputs of the half second that follows.
 struct Warm {
-  explicit Warm(int cars) : local(PerceptionConfig{}) {
+  explicit Warm(int cars) : local(LocalConfig{}) {
     for (const Input& input : MakeInputs(DenseTraffic(cars, 2.5))) {
       if (HeaderOf(input).stamp < DriveStart() + FromSeconds(2.0)) {
         Step(local, input);

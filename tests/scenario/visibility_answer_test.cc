@@ -100,7 +100,7 @@ class AskedScenario {
     std::vector<std::string> problems;
     ASSERT_TRUE(LoadDaemonConfig("", config_, problems));
     Sort(Record(scenario, seed));
-    LocalPerception local(config_.perception);
+    LocalPerception local(config_.perception.local());
     LocalFrame frame;
     for (const Input& input : inputs_) {
       RadarPreparation prepared;

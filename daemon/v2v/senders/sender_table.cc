@@ -62,7 +62,11 @@ SenderTable::Admission SenderTable::Admit(const Claim& claim, const ClaimInOdome
   if (is_full) {
     const bool is_penalised = stone && stone->penalty.state != TrustState::kNone;
     const auto least = LeastLost(is_penalised, holds);
-    if (least == records_.end()) return admission;
+    if (least == records_.end()) {
+      // The tombstone waits for the newcomer's next message: no room washes no penalty off.
+      if (stone) tombstones_.Set(*stone);
+      return admission;
+    }
     admission.evicted = least->sender;
     records_.erase(least);
   }
