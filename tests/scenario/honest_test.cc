@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nobody lies: nobody is withdrawn.
+// Nobody lies: nobody is withdrawn. And what excuses the honest excuses no liar.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,6 +41,15 @@ TEST(NobodyLies, ACarThatSpedUpBehindALorryComesBackAsTheSameVehicle) {
   EXPECT_THAT(outcome.reports, ::testing::IsEmpty());
   EXPECT_GE(outcome.priority_ids.size(), 4u);
   for (const auto& [sender, ids] : outcome.priority_ids) EXPECT_EQ(ids.size(), 1u) << sender;
+}
+
+// A claim that drifts aside soon lies behind something else. Only a vehicle that the sensors measure
+// where its sender has it is excused for the part of it that is hidden there.
+TEST(SomebodyLies, AClaimThatDriftsBehindSomethingElseIsFoundOut) {
+  const Recording recording = RecordWith("campaign_highway", 964, "A07_lateral_0.5mps", 20);
+  ASSERT_FALSE(recording.empty());
+  const Outcome outcome = Perceive(recording);
+  EXPECT_THAT(outcome.reports, ::testing::Contains("residual_drift"));
 }
 
 }  // namespace

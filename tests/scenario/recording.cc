@@ -11,6 +11,7 @@
 #include "daemon/rim/engine/daemon_config.h"
 #include "daemon/rim/engine/engine.h"
 #include "daemon/rim/wire/codec.h"
+#include "sim/world/overlay.h"
 #include "sim/world/scenario.h"
 #include "sim/world/world.h"
 #include "v2vouch/bsm_t.hpp"
@@ -83,11 +84,20 @@ bsm_t GhostMessage(const Ghost& ghost, const truth_list_t& truth, double x_m, do
 }  // namespace
 
 Recording Record(const std::string& name, std::uint64_t seed) {
+  return RecordWith(name, seed, "", 0);
+}
+
+Recording RecordWith(const std::string& name, std::uint64_t seed, const std::string& overlay,
+                     int vehicles) {
   sim::Scenario scenario;
   std::vector<std::string> problems;
   Recording recording;
   std::unique_ptr<sim::World> world;
   if (sim::LoadScenario("sim/scenarios/" + name + ".yaml", scenario, problems)) {
+    if (!overlay.empty()) {
+      sim::LayOver("sim/attacks/catalogue/" + overlay + ".yaml", scenario, problems);
+    }
+    if (vehicles > 0) scenario.traffic.vehicles = vehicles;
     world = sim::World::Make(scenario, seed, problems);
   }
   for (const std::string& problem : problems) ADD_FAILURE() << problem;

@@ -2,12 +2,16 @@
 #include "daemon/v2v/perception/partial_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <variant>
+
+#include "daemon/local/visibility/box.h"
 
 namespace v2vouch {
 namespace {
 
 constexpr double kExpectedSigma_m = 0.3;
+constexpr double kOnVehicle_m = 0.5;  // Slack of a reflection round the expected footprint.
 
 bool IsOfAPart(const SensorMeasurement& measurement, const BridgeConfig& config) {
   if (const auto* radar = std::get_if<RadarMeasurement>(&measurement)) {
@@ -17,15 +21,19 @@ bool IsOfAPart(const SensorMeasurement& measurement, const BridgeConfig& config)
   return camera != nullptr && (camera->left_is_cut || camera->right_is_cut);
 }
 
-bool IsPartlyCovered(const Occluder& expected, const SensorMeasurement& measurement,
-                     const VisibilityMap& map, const BridgeConfig& config) {
-  if (const auto* radar = std::get_if<RadarMeasurement>(&measurement)) {
-    return map.FromRadar(radar->radar, expected).uncovered < config.part_share;
-  }
-  const auto* camera = std::get_if<CameraMeasurement>(&measurement);
-  if (camera == nullptr) return false;
-  const SensorView seen = map.FromCamera(camera->camera, expected);
-  return seen.left_is_covered || seen.right_is_covered;
+// A radar has measured a point on the vehicle where its sender has it, and the rest of it there
+// lies behind something. Where the point is not on that footprint the claim has left the vehicle
+// that the sensors see, and what may cover the claimed position excuses nobody.
+bool IsOnPartlyCovered(const Occluder& expected, const SensorMeasurement& measurement,
+                       const EgoState& ego, const V2vView& view, const VisibilityMap& map) {
+  const auto* z = std::get_if<RadarMeasurement>(&measurement);
+  if (z == nullptr) return false;
+  const RadarConfig& radar = view.vehicle.radars[static_cast<std::size_t>(z->radar)];
+  const double bearing_B = radar.yaw_rad + z->azimuth_rad;
+  const Point<Odometry> p_O = ego.X_OB * Point<Body>{radar.x_m + z->range_m * std::cos(bearing_B),
+                                                     radar.y_m + z->range_m * std::sin(bearing_B)};
+  return Holds(Box(expected), p_O.vector(), kOnVehicle_m) &&
+         map.FromRadar(z->radar, expected).uncovered < view.config.bridge.part_share;
 }
 
 }  // namespace
@@ -48,13 +56,13 @@ std::optional<Occluder> ExpectedFootprint(const V2vView& view, const LocalTrack&
       .position_sigma_m = kExpectedSigma_m};
 }
 
-bool IsPartiallyObserved(const LocalTrack& track, const std::optional<Occluder>& expected,
-                         const LocalFrame& frame, const VisibilityMap& map,
-                         const BridgeConfig& config) {
+bool IsPartiallyObserved(const V2vView& view, const LocalTrack& track,
+                         const std::optional<Occluder>& expected, const LocalFrame& frame,
+                         const VisibilityMap& map) {
   return std::ranges::any_of(frame.updates, [&](const SensorUpdate& update) {
     return update.track_id == track.id &&
-           (IsOfAPart(update.measurement, config) ||
-            (expected && IsPartlyCovered(*expected, update.measurement, map, config)));
+           (IsOfAPart(update.measurement, view.config.bridge) ||
+            (expected && IsOnPartlyCovered(*expected, update.measurement, frame.ego, view, map)));
   });
 }
 

@@ -19,8 +19,8 @@ std::optional<Occluder> ExpectedFootprint(const V2vView& view, const LocalTrack&
 
 /// Whether a measurement of this frame had no more than a part of the track's vehicle: the rest lay
 /// behind something or out of view, by the track's own footprint or by the expected one.
-bool IsPartiallyObserved(const LocalTrack& track, const std::optional<Occluder>& expected,
-                         const LocalFrame& frame, const VisibilityMap& map,
-                         const BridgeConfig& config);
+bool IsPartiallyObserved(const V2vView& view, const LocalTrack& track,
+                         const std::optional<Occluder>& expected, const LocalFrame& frame,
+                         const VisibilityMap& map);
 
 }  // namespace v2vouch

@@ -147,13 +147,12 @@ void V2vPerception::RememberTracks(const LocalFrame& frame, const VisibilityMap&
     // Coverage is asked for tracks that a sender may be; the question is not cheap.
     const bool has_pair = pairs_.HasTrack(track.id);
     const auto expected = ExpectedFootprint(View(), track, frame.stamp);
-    tracks_.Add(track,
-                {.is_sure = has_pair && AreSensorsSure(track, frame, map, settings_->vehicle,
-                                                       config.sensor_support),
-                 .is_hit = track.IsHitAt(frame.stamp) ||
-                           std::ranges::find(frame.updates, track.id, &SensorUpdate::track_id) !=
-                               frame.updates.end(),
-                 .is_partial = IsPartiallyObserved(track, expected, frame, map, config.bridge)});
+    tracks_.Add(track, {.is_sure = has_pair && AreSensorsSure(track, frame, map, settings_->vehicle,
+                                                              config.sensor_support),
+                        .is_hit = track.IsHitAt(frame.stamp) ||
+                                  std::ranges::find(frame.updates, track.id,
+                                                    &SensorUpdate::track_id) != frame.updates.end(),
+                        .is_partial = IsPartiallyObserved(View(), track, expected, frame, map)});
   }
 }
 
