@@ -16,7 +16,8 @@ constexpr double kDriftLength_m = 10.0;
 // Priors and random walks of the odometry's systematic errors: a production yaw rate sensor has up
 // to 0.1 deg/s of offset, a wheel speed signal up to 1 % of scale (0.8 % measured on a real drive).
 constexpr double kYawDriftSigma_radps = 0.002;
-constexpr double kYawDriftWalk = 2e-5;  // [rad/s/sqrt(s)]
+constexpr double kLearntSigma_radps = 5e-4;  // Of a gyro offset learnt in a second of standing.
+constexpr double kYawDriftWalk = 2e-5;       // [rad/s/sqrt(s)]
 constexpr double kScaleSigma = 0.01;
 constexpr double kScaleWalk = 1e-4;  // [1/sqrt(s)]
 // Correlation times of a receiver's errors: position 4.5 to 5.5 s was measured on a real drive;
@@ -90,12 +91,20 @@ void AlignmentFilter::Predict(const EgoState& ego, const AlignmentNoise& noise) 
   const double turned_O = AngleDifference(ego.X_OB.yaw_rad(), X_OB_.yaw_rad());
   const double distance = moved_O.norm();
   const bool is_standing = IsStanding(ego);
-  // What odometry has learnt to correct since is no longer left for this filter.
-  mean_(kYawDrift) += ego.gyro_offset_radps - gyro_offset_radps_;
+  // What odometry has learnt to correct since is no longer left for this filter. A car that drives
+  // off has learnt the gyro's offset at standstill, better than fixes can tell it: no drift is
+  // left.
+  if (!is_standing && ego.gyro_offset_radps != gyro_offset_radps_) {
+    mean_(kYawDrift) += ego.gyro_offset_radps - gyro_offset_radps_;
+    gyro_offset_radps_ = ego.gyro_offset_radps;
+    const Vector gain = covariance_.col(kYawDrift) / (covariance_(kYawDrift, kYawDrift) +
+                                                      kLearntSigma_radps * kLearntSigma_radps);
+    mean_ -= gain * mean_(kYawDrift);
+    covariance_ -= (gain * covariance_.row(kYawDrift)).eval();
+  }
   if (ego.speed_factor != speed_factor_) {
     mean_(kScale) = (1.0 + mean_(kScale)) * speed_factor_ / ego.speed_factor - 1.0;
   }
-  gyro_offset_radps_ = ego.gyro_offset_radps;
   speed_factor_ = ego.speed_factor;
 
   // Yaw at the middle of the interval, so that a drift during it is counted half.
