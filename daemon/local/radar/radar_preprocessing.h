@@ -16,7 +16,7 @@
 
 namespace v2vouch {
 
-/// Settings of the radar stage (DESIGN 5.1).
+/// Settings of the radar stage: from reflections to clusters with Doppler and extent.
 struct RadarPreprocessingConfig {
   double min_snr_db = 6.0;      ///< Weaker reflections are dropped, where the sensor gives SNR.
   double min_rcs_dbsm = -15.0;  ///< Smaller ones too, where it gives RCS: up to 10 m ...

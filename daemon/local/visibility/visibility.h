@@ -45,7 +45,7 @@ struct SensorView {
 };
 
 /// Azimuth-range occlusion round each sensor from tracked boxes and accumulated static returns
-/// (DESIGN 5.3), on flat ground: boxes and walls block, nothing is seen over or under them.
+/// on flat ground: boxes and walls block, nothing is seen over or under them.
 ///
 /// A footprint is looked at along rays spread over its azimuth span, widened by 3 sigma of its
 /// position. Each ray is

@@ -146,7 +146,7 @@ class Daemon {
 
   // Lists go on without frames, marked stale; a status comes even where no message does.
   void OnTime(Clock::time_point now) {
-    // Who was not running cannot know what came meanwhile: it waits in the sockets.
+    // After a suspension of the process its inputs still wait in the sockets: no silence yet.
     if (now - last_tick_ > kSuspended) {
       last_list_ = now;
       stale_round_ = 0;

@@ -14,7 +14,7 @@ struct GpsBiasConfig {
   double window_s = 60.0;        ///< Residuals older than this are forgotten.
   double knot_s = 10.0;          ///< Of the wandering part, which is linear between knots.
   int min_residuals = 10;        ///< Of a sender in the window; below, nothing is said of it.
-  int max_senders = 32;          ///< The table's size; whoever was silent longest makes room.
+  int max_senders = 32;          ///< The table's size; the sender silent for longest is evicted.
   double common_sigma_m = 1.5;   ///< What all are off by: the ego's own error, per axis.
   double sender_sigma_m = 1.5;   ///< A sender's own constant part, per axis.
   double wander_sigma_m = 0.5;   ///< A sender's wandering part: first-order Gauss-Markov ...

@@ -108,10 +108,10 @@ struct SenderTrack {
 /// - rates, of the sender and of all: kBsmRate. Once half of the total budget is spent, only known
 ///   senders are served
 /// - new identities beyond their budget, or no room: kBsmTableFull. Once half of that budget is
-///   spent a newcomer must have knocked before (KnockMemory), so that a flood of identities that
-///   speak once does not keep others out; once the table is half full, the budget binds. A full
-///   table gives up the sender unheard for longest, never a pinned one, never one heard in the last
-///   second
+///   spent a new id is admitted only with its second message within 2 s (KnockMemory), so that a
+///   flood of identities that speak once does not keep others out; once the table is half full, the
+///   budget binds. A full table evicts the sender unheard for longest, never a protected one, never
+///   one heard in the last second
 ///
 /// An accepted claim carries the gravest that the sender's own messages have against it
 /// (SenderChecks), refused ones included.
@@ -128,7 +128,7 @@ class BsmIntake {
   /// second of `now`.
   void Expire(Timestamp now);
 
-  /// A pinned sender keeps its place in a full table while it is heard. No-op when unknown.
+  /// A protected sender is never evicted from a full table while it is heard. No-op when unknown.
   void Pin(SenderId sender, bool is_pinned);
 
   /// Ordered by sender id.

@@ -14,10 +14,10 @@ namespace v2vouch {
 struct SenderTrack;
 
 /// All checks that need nothing but one sender's own messages, with their memory. Fixed size
-/// (under 2 kB), no allocation. What each looks for stands with it.
+/// (under 2 kB), no allocation. What each finds stands with it.
 ///
-/// What refused messages brought to light (rate, implausible) rides on the sender's next accepted
-/// claim, as does a core heard under another id, within two seconds.
+/// A finding from refused messages (rate, implausible) is attached to the sender's next accepted
+/// claim, as is a core heard under another id, within two seconds.
 class SenderChecks {
  public:
   /// A message that is no repeat, before it is known whether it is taken.

@@ -43,9 +43,9 @@ namespace v2vouch {
 /// by what the sensors see at its claimed position, by its residuals to the LOCAL track it is taken
 /// for. Penalties and doubts outlive the identity (tombstones).
 ///
-/// While the alignment is suspect nobody is validated or accused; claims are still used, through
+/// While the alignment is suspect no sender is validated or accused; claims are still used, through
 /// the frozen alignment. While all senders are off in the same way (common mode) that shift counts
-/// as our own: nobody is accused, and a sender is judged by what is left of its residual.
+/// as our own: no sender is accused, and each is judged by what is left of its residual.
 ///
 /// State and its owners: TrackSnapshots (what the sensors know), SenderTable (one record per
 /// sender), SenderPairs (who may be whom), PriorityList (the vehicles), HeightJudge,

@@ -80,9 +80,9 @@ void TakeMeasurements(PriorityVehicle& vehicle, const TrackSnapshot& seen, const
     vehicle.filter.ResetVehicle(track.state_O);
   }
   // Where the reflecting point lies on the vehicle is the sensors' lasting error; LOCAL carries it
-  // with the size, and no claim tells it apart from the sender's bias. While only a part is
-  // observed the filter keeps to what it knew of the whole, or the part would drag it along; the
-  // doubt is still published.
+  // with the size, and no claim can separate it from the sender's bias. During a partial
+  // observation the filter keeps what it knew of the complete vehicle, or the part would drag it
+  // along; the uncertainty is still published.
   const Eigen::Matrix2d P = track.state_O.covariance.topLeftCorner<2, 2>();
   if (!seen.is_partial) vehicle.filter.WidenPosition(P);
   vehicle.lasting = vehicle.filter.LackOf(P);

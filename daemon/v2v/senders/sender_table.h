@@ -30,9 +30,9 @@ enum class SenderHolds : std::uint8_t {
 /// The senders near the car, one record each; bounded. Beside them what outlives a record: the
 /// tombstones of penalised senders, and what an earlier run of the program knew.
 ///
-/// Where more senders speak than have room, admission is a token bucket: were every newcomer let
-/// in at once, nobody's second message would find the first one's record, and nobody could be
-/// judged. Evicted are first the penalised (their tombstones remember them), then senders without a
+/// Where more senders speak than have room, admission is a token bucket: if every newcomer were
+/// admitted at once, no sender's second message would find the record of its first, and none could
+/// be judged. Evicted are first the penalised (tombstones keep their state), then senders without a
 /// LOCAL track, then others; among equals the one silent for longest. A sender with a vehicle is
 /// never evicted, so no flood of identities can drive it out.
 ///

@@ -148,8 +148,8 @@ bool IsFarApart(const CoObservation& now, const TrustConfig& config) {
 std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config) {
   if (!history.is_settled()) return std::nullopt;
-  // What all are off by may be our own fault. Who is not off at all is not to blame for the others:
-  // the shift may be a lie that several tell together.
+  // A shift of all senders may be our own fault. A sender without that shift is not penalised for
+  // it: the shift may be a lie that several senders report together.
   Eigen::Vector2d own_O = history.mean_O();
   if (now.is_ego_shifted && (own_O - now.shift_O).norm() < own_O.norm()) own_O -= now.shift_O;
   return JudgeResidual(

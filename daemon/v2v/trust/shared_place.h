@@ -33,7 +33,7 @@ struct SharedPlaceConfig {
 class SharedPlace {
  public:
   void OnLook(Timestamp stamp, bool is_shared);
-  /// Long enough that nobody new is to be believed there.
+  /// Long enough that no further sender is validated there.
   [[nodiscard]] bool is_contested() const { return shared_s_ >= kContested_s; }
   [[nodiscard]] std::optional<Finding> Judge(const SharedPlaceConfig& config) const;
 

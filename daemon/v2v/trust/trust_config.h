@@ -16,7 +16,7 @@ struct TrustConfig {
   int candidate_messages = 3;     ///< Consistent messages that make a CANDIDATE.
   int co_observations = 10;       ///< Claims seen together with the sensors before VALIDATED ...
   double co_observed_s = 1.5;     ///< ... and over this long.
-  int slow_observations = 4;      ///< So many suffice, from whoever speaks at 1 Hz ...
+  int slow_observations = 4;      ///< So many suffice for a sender at 1 Hz ...
   double slow_observed_s = 2.8;   ///< ... over this long.
   int again_observations = 5;     ///< Relied on in the last again_s and not blamed: so many ...
   double again_observed_s = 0.6;  ///< ... over so long suffice.
@@ -30,7 +30,7 @@ struct TrustConfig {
   double stale_position_s = 0.15;
   double speed_withdraw_mps = 1.0;  ///< velocity_residual: claimed against sensed velocity.
   double speed_accuse_mps = 2.0;
-  double torn_m = 2.5;  ///< A residual that jumps by so much was torn by one of the two sides.
+  double torn_m = 2.5;  ///< residual_jump: a change by so much at once is a break of either side.
   /// velocity_residual: only once the position has come so far from where it was.
   double leaving_m = 1.5;
   /// heading_residual, above heading_min_speed_mps.
