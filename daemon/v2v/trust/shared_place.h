@@ -26,8 +26,8 @@ struct SharedPlaceConfig {
 };
 
 /// How long a sender's claims have been those of another sender, too, while the sensors see one
-/// vehicle there: seconds shared less seconds apart, never below 0. Which of them is the vehicle's
-/// own is not known, so none is believed; only who was relied on before is not asked. WITHDRAW
+/// vehicle there: seconds shared less seconds apart, never below 0. Which of them belongs to the
+/// vehicle is unknown, so none is believed; only a sender validated before is exempt. WITHDRAW
 /// alone: two receivers with like errors may carry two honest cars to one place while one of them
 /// is hidden. Copyable, fixed size.
 class SharedPlace {

@@ -15,10 +15,10 @@
 
 namespace v2vouch {
 
-/// Where penalised and doubted senders were last heard, so that no new identity washes it off.
-/// Keyed by certificate where there is one, and by place and motion: a sender that was never heard
-/// before the old one fell silent, and goes on where its claims would be now, is the old one again.
-/// A car that was heard beside the liar is not.
+/// Where penalised and doubted senders were last heard, so that no new identity clears a penalty.
+/// Keyed by certificate where there is one, and by position and motion: a sender that was never
+/// heard before the old one fell silent, and continues where its claims would be now, is its
+/// successor. A car that was heard beside the liar is not.
 ///
 /// Fixed size: the oldest tombstone is replaced. Copyable.
 class Tombstones {
