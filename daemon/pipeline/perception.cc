@@ -284,7 +284,7 @@ void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
   const EgoOdometry& odometry = state.timeline.local().odometry();
   const double hold_s = state.config.timeline.stale_hold_s;
   const Timestamp end = frame->stamp + FromSeconds(hold_s);
-  // The ego drives on like everybody else; past the end it is of no use to anybody.
+  // The ego is predicted like all vehicles; past the end its pose is of no use.
   const auto ego_at = [&](Timestamp t) {
     const double longest_gap_s = EgoOdometry::kMaxGap_s + hold_s;
     return odometry.StateAt(std::min(t, end), longest_gap_s).value_or(frame->ego);

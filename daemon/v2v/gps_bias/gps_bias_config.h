@@ -25,7 +25,7 @@ struct GpsBiasConfig {
   double max_change_m = 3.0;     ///< Of the wandering part within a window; honest ones stay below.
   double null_chi_square = 3.5;  ///< Wandering, per degree of freedom; beyond it is no noise.
   int min_common_senders = 3;    ///< Fewer say nothing of what is common.
-  double leave_one_out_gate = 13.8;  ///< Chi-square, 2 dof: whom the common part hangs on alone.
+  double leave_one_out_gate = 13.8;  ///< Chi-square, 2 dof: one sender alone moves the common part.
 
   template <class Archive>
   void Visit(Archive& a) {

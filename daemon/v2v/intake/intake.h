@@ -88,11 +88,11 @@ struct SenderTrack {
   /// Of the latest message; none where its motion started anew for a jump or a silence.
   std::optional<double> latest_nis;
   int nis_freedom = 4;          ///< Of latest_nis.
-  std::uint64_t resets = 0;     ///< Times the motion broke off: jumps, long silences.
+  std::uint64_t resets = 0;     ///< Restarts of the motion: jumps, long silences.
   std::uint64_t lost = 0;       ///< Messages missing by msgCnt.
   std::uint64_t over_rate = 0;  ///< Messages refused because the sender speaks too often.
   int msg_count = 0;            ///< Of the latest message.
-  /// The same core data was heard under another id too; who copied whom is not known.
+  /// The same core data was heard under another id too; which is the copy is not known.
   std::uint64_t contested = 0;
   std::optional<Timestamp> last_contested;
 };

@@ -26,7 +26,7 @@ class SenderChecks {
   void OnOverRate(Timestamp stamp) { rate_.OnRefused(stamp); }
   /// Refused for what it claims.
   void OnImplausible() { implausible_.OnMessage(true); }
-  /// The same core was heard under another id (contested_core). Who copied whom is not known:
+  /// The same core was heard under another id (contested_core). Which is the copy is not known:
   /// relays exist.
   void OnContested(Timestamp stamp) { contested_ = stamp; }
   /// What its heading means has turned out to be the other way (DirectionReading): ways and speeds

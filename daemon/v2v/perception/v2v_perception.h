@@ -48,8 +48,8 @@ namespace v2vouch {
 /// as our own: no sender is accused, and each is judged by what is left of its residual.
 ///
 /// State and its owners: TrackSnapshots (what the sensors know), SenderTable (one record per
-/// sender), SenderPairs (who may be whom), PriorityList (the vehicles), HeightJudge,
-/// CommonModeMonitor, Alignment. Judgements are functions of a V2vView of them.
+/// sender), SenderPairs (which sender may be which track), PriorityList (the vehicles),
+/// HeightJudge, CommonModeMonitor, Alignment. Judgements are functions of a V2vView of them.
 ///
 /// Copyable: a copy is a checkpoint. Bounded by max_senders and max_pairs. Events must come in
 /// order of time; the same events give the same bits.

@@ -94,7 +94,7 @@ void ObserveCarriedPosition(const V2vView& view, PriorityVehicle& vehicle, const
                             const VisibilityMap& map) {
   const Occluder footprint = FootprintOfVehicle(vehicle);
   // Anything there, even a track too young to be confirmed, means that it is not empty; but not a
-  // vehicle in the next lane, nor one that is somebody else's.
+  // vehicle in the next lane, nor one that is another sender's.
   const double slack_m = std::min(2.0 * footprint.position_sigma_m, kMostSlack_m);
   for (const LocalTrack& track : frame.tracks) {
     if (!track.IsHitAt(frame.stamp) || !AreClose(footprint, track, slack_m)) continue;

@@ -66,7 +66,7 @@ struct BridgeConfig {
 /// T = min(most, base + co-observed), at least `least`.
 double BridgeBudget_s(double co_observed_s, const BridgeConfig& config);
 
-/// A vehicle as it was known when it was last seen, carried on without V2V. Copyable, fixed size.
+/// A vehicle as it was known when it was last seen, predicted without V2V. Copyable, fixed size.
 class Coast {
  public:
   Coast() = default;

@@ -49,7 +49,7 @@ class SenderTable {
     std::optional<SenderId> evicted;  ///< Whose record was given up for it.
   };
   /// A record for a sender that has none. Penalties are inherited from the tombstone of the
-  /// sender, of its certificate or of whom it seems to continue; else from the earlier run.
+  /// sender, of its certificate or of its likely predecessor; else from the earlier run.
   /// @param here its claim.  @param holds what would be lost with another sender's record.
   Admission Admit(const Claim& claim, const ClaimInOdometry& here, const SenderLimits& limits,
                   const TombstoneConfig& tombstones,

@@ -63,7 +63,7 @@ void ResidualHistory::LookForTear(const CoObservation& observation, const TrustC
     is_torn_ = has_any_ && torn_m_ > limit_m;
     unexplained_.setZero();
   }
-  // While but a part is seen the mean rests. A part may mislead by the size of a vehicle, no more.
+  // During a partial observation the mean is kept: the part may be off by up to a vehicle's size.
   if (observation.is_partial && has_any_ && !is_torn_) {
     torn_m_ = (observation.residual_O - mean_).norm();
     is_torn_ = torn_m_ > limit_m + config.torn_m;

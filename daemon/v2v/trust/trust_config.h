@@ -41,8 +41,8 @@ struct TrustConfig {
   double accel_withdraw_mps2 = 3.0;
   /// plausible size: claimed size off by this share of the sensed one.
   double size_mismatch = 0.6;
-  double odd_claim_m = 6.0;  ///< A claim so far from its sender's others may be somebody else's ...
-  int odd_claims = 5;        ///< ... but not so many in a row.
+  double odd_claim_m = 6.0;    ///< A claim so far from the others may be of another device ...
+  int odd_claims = 5;          ///< ... but not so many in a row.
   double accuse_hold_s = 5.0;  ///< An accusing level must last this long.
   double suspect_s = 2.0;      ///< Least stay in SUSPECT.
   double clean_s = 15.0;       ///< Agreeing with the sensors before CANDIDATE; doubles each time.
