@@ -159,8 +159,8 @@ std::optional<Reason> Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs)
     outputs.Refuse(claim.refusal(), bsm.stamp);
     return claim.reason();
   }
-  // Far strangers can meet no track: they are listed, and cost nothing more. Whoever was near and
-  // suddenly is far must answer for it.
+  // A sender far from the ego can meet no track: it is listed and costs nothing more. A followed
+  // sender that is suddenly far goes on, so that its jump is judged.
   if (place.is_known && HorizontalDistance(place.p_E, claim->p_E) > config.timeline.interest_m &&
       !timeline.priority().IsFollowed(bsm.sender)) {
     Tell(bsm, std::nullopt, outputs);
@@ -210,7 +210,7 @@ void Perception::State::ListSenders(Outputs& outputs) {
 }
 
 void Perception::State::Restart() {
-  // A step of the clock washes nobody's penalty off.
+  // Penalties survive a step of the clock.
   std::vector<TrustMemory> kept = timeline.priority().TrustToKeep(timeline.newest_time());
   timeline = Timeline(config);
   timeline.RestoreTrust(std::move(kept));
@@ -284,7 +284,7 @@ void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
   const EgoOdometry& odometry = state.timeline.local().odometry();
   const double hold_s = state.config.timeline.stale_hold_s;
   const Timestamp end = frame->stamp + FromSeconds(hold_s);
-  // The ego drives on like everybody else; past the end it is of no use to anybody.
+  // The ego is predicted like all vehicles; past the end its pose is of no use.
   const auto ego_at = [&](Timestamp t) {
     const double longest_gap_s = EgoOdometry::kMaxGap_s + hold_s;
     return odometry.StateAt(std::min(t, end), longest_gap_s).value_or(frame->ego);
@@ -308,8 +308,8 @@ void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
   outputs.priority.tracks.clear();
   outputs.priority.ego_gnss_suspect = state.timeline.priority().is_ego_gnss_suspect();
 
-  // Nobody vouches for anything any more: empty and blind, which is not the same as "nothing
-  // there".
+  // No sensor supports any track any more: the list is empty and all sectors are blind, which is
+  // not the same as "nothing there".
   if (at > end) {
     outputs.local.tracks.clear();
     return;

@@ -11,7 +11,7 @@
 
 namespace v2vouch {
 
-/// What time it is, by what most own sensors agree on (DESIGN section 4). No single source is the
+/// What time it is, by what most own sensors agree on. No single source is the
 /// clock: one that is ahead, behind, drifting, stuck or the first to be heard costs only itself.
 /// Reads the stamps in order of arrival and nothing else, so a log gives the same rulings at any
 /// replay speed.
@@ -21,14 +21,14 @@ namespace v2vouch {
 /// motion, which nothing works without, weighs 1.5 times a radar or camera and so breaks ties. A
 /// source has stopped speaking when two others (the other one, where there is but one) have moved
 /// on by `kSilent_s` of their own time since its last message; so the backlog of one source makes
-/// nobody else look silent.
+/// no other source count as silent.
 ///
 /// T follows the median while that moves by no more than the replay buffer, never backwards.
 /// A larger step, or any step back of more than kStepBack_s, needs more than half of the weight of
 /// all sources heard within kForgotten_s: then the common clock was set. After a step back, or
 /// forward by more than `reset_s`, everything starts again; a shorter step forward is a gap.
 ///
-/// With two sources that disagree, nobody can know which is right: the clock is that of ego motion.
+/// Two sources that disagree give no majority: the clock is then that of ego motion.
 class SourceClock {
  public:
   explicit SourceClock(const TimelineConfig& config) : config_(config) {}
@@ -53,8 +53,8 @@ class SourceClock {
 
   /// T; nullopt before the first message.
   [[nodiscard]] std::optional<Timestamp> agreed() const { return agreed_; }
-  /// While work is short: frames ahead of T by more than kSupported_s are refused, whoever sends
-  /// them, because every other frame would have to be put in before them.
+  /// While work is short: frames ahead of T by more than kSupported_s are refused from every
+  /// source, because every other frame would have to be put in before them.
   void SetStrict(bool is_strict) { is_strict_ = is_strict; }
 
   /// Sources whose clock is off, with how far: those that are refused for it, and those that are
@@ -62,11 +62,11 @@ class SourceClock {
   void CollectNotices(std::vector<Notice>& notices) const;
 
   static constexpr double kSilent_s = 0.4;  ///< No say in T from then on.
-  /// Who has not spoken for so long, in the same sense, cannot contradict whoever is ahead.
+  /// A source silent for so long, in the same sense, cannot contradict a source that is ahead.
   static constexpr double kRecent_s = 0.15;
   static constexpr double kForgotten_s = 2.0;  ///< No say in steps from then on.
-  /// Nobody is reordered so far back in a row of rising stamps, six of ego motion or three of a
-  /// sensor; shorter steps back of all look like reordering.
+  /// Reordering never puts a row of rising stamps (six of ego motion, three of a sensor) so far
+  /// back; shorter steps back of all sources count as reordering.
   static constexpr double kStepBack_s = 0.1;
   /// A frame may be so far ahead of the newest stamp of a quarter of the others.
   static constexpr double kSupported_s = 0.25;

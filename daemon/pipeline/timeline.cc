@@ -41,9 +41,9 @@ constexpr std::size_t kLongestRun = 64;
 
 // Late claims that may wait for the next frame, at most: frames may fail to come.
 constexpr int kMostWaiting = 256;
-// What one late claim may cause to be run again, in claims (some 15 us each). A backlog that is
-// older would cost so much that it never ends. A frame looks at every sender that is followed: it
-// costs the more, the more has come lately.
+// What one late claim may cause to be run again, in claims (some 15 us each). An older backlog
+// would cost more than it brings. A frame visits every followed sender, so its cost grows with the
+// number of recent claims.
 constexpr std::size_t kDeepestClaim = 256;
 constexpr std::size_t kDearestFrame = 16;
 constexpr std::size_t kEventsPerClaim = 112;
@@ -109,7 +109,7 @@ std::unique_ptr<Timeline::Event> Timeline::NewEvent(TimelineInput input) {
   return event;
 }
 
-// Frames are the natural places to go back to: few, and the dear ones to re-run.
+// A checkpoint after each frame: frames are rare and costly to re-run.
 bool Timeline::NeedsCheckpoint(const TimelineInput& input) const {
   if (HasFrame(input)) return true;
   if (!std::holds_alternative<EgoMotion>(input) || events_.size() < kLongestRun) return false;

@@ -5,7 +5,7 @@
 
 namespace v2vouch {
 
-/// Time rules (DESIGN section 4).
+/// Time rules: how late a message may be, and what late messages may cost.
 struct TimelineConfig {
   /// How late a message may be against the agreed time and still be put in its place; as far ahead
   /// of it a stamp may be.

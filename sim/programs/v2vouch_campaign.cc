@@ -44,7 +44,7 @@ constexpr const char* kExamples =
     "\n"
     "The same call again takes up where it was stopped: each run leaves one small file under\n"
     "OUT/runs. Call with another --config, another daemon or other attacks: another --out.\n"
-    "docs/campaign.md tells more, GNU parallel and Slurm included.\n"
+    "docs/how-to/run-a-campaign.md tells more, GNU parallel and Slurm included.\n"
     "\n"
     "Exit codes: 0 good; 1 a run failed or was stopped, with --gates a target is missed, with\n"
     "--ghosts-only an attacker was published as a ghost; 2 usage.";

@@ -48,7 +48,7 @@ void Run(const std::vector<Input>& inputs) {
 }
 
 // Four seconds of driving among ten cars, every input on time. Can afford 13 ms, which is 300 x
-// real time (DESIGN, offline replay).
+// real time, the target of offline replay.
 void BM_DriveOnTime(benchmark::State& state) {
   const std::vector<Input> inputs = MakeInputs(DenseTraffic(10, 4.0));
   for (auto _ : state) Run(inputs);
@@ -76,7 +76,7 @@ BENCHMARK(BM_DriveWithLatePictures)->Unit(benchmark::kMillisecond);
 // What a late picture costs beside the frames it has re-run. Every picture of a drive among ten
 // cars comes as many milliseconds late as the argument says. Counters, means over pictures: `reran`
 // frames after it, `late_us` its whole step, `step_us` a frame's step in order. Can afford
-// (reran + 2) steps (DESIGN section 4: restore, itself, what came since): `of_allowed` <= 1.
+// (reran + 2) steps (restore, itself, what came since): `of_allowed` <= 1.
 void BM_LatePicture(benchmark::State& state) {
   const double delay_s = 1e-3 * static_cast<double>(state.range(0));
   std::vector<Input> inputs = MakeInputs(DenseTraffic(10, 4.0));
@@ -183,7 +183,7 @@ struct Warm {
   std::vector<Input> rest;
 };
 
-// One frame of LOCAL, odometry included. Can afford 100 us among 10 cars, 500 us among 50 (DESIGN).
+// One frame of LOCAL, odometry included. Can afford 100 us among 10 cars, 500 us among 50.
 void BM_LocalFrame(benchmark::State& state) {
   Warm warm(static_cast<int>(state.range(0)));
   int frames = 0;
@@ -204,7 +204,7 @@ void BM_LocalFrame(benchmark::State& state) {
 }
 BENCHMARK(BM_LocalFrame)->Arg(10)->Arg(50)->Unit(benchmark::kMicrosecond);
 
-// LOCAL's part of a checkpoint. A whole one can afford 20 us with 50 tracks (DESIGN).
+// LOCAL's part of a checkpoint. A whole one can afford 20 us with 50 tracks.
 void BM_LocalCheckpoint(benchmark::State& state) {
   const Warm warm(static_cast<int>(state.range(0)));
   LocalPerception copy = warm.local;

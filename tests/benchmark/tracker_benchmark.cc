@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tracker's hot paths, each with the time we can afford on one ordinary core beside it. Targets
-// of whole steps are those of DESIGN section 8; those of the parts add up to them.
+// of the parts add up to those of whole steps (docs/results/peers.md).
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # A tiny campaign spread over shards by GNU parallel gives the figures of the same campaign in one
-# piece, as docs/campaign.md says. Usage: campaign_parallel_test.sh V2VOUCH_CAMPAIGN
+# piece, as docs/how-to/run-a-campaign.md says. Usage: campaign_parallel_test.sh V2VOUCH_CAMPAIGN
 set -euo pipefail
 campaign="$1"
 if ! parallel --version 2>/dev/null | grep -q '^GNU parallel'; then

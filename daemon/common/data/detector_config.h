@@ -28,7 +28,7 @@ struct NetworkClass {
 };
 
 /// The camera network and what is done to a picture before and after it. One for all cameras with
-/// `source: image`. Effects of the settings on real pictures: docs/camera.md.
+/// `source: image`. Effects of the settings on real pictures: docs/results/camera.md.
 struct DetectorConfig {
   std::string model;         ///< FILE.weights (darknet) or FILE.onnx (YOLOX); "" = no network.
   std::string network;       ///< Darknet's .cfg; "" = the model's name with .cfg.

@@ -19,16 +19,16 @@ struct RadarMeasurement {
   double azimuth_rad = 0.0;
   double range_rate_mps = 0.0;  ///< As measured, relative to the moving antenna.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< Of [range, azimuth, range rate].
-  double ground_range_rate_mps = 0.0;  ///< With the antenna's own motion taken out; 0 = standing.
-  bool is_static = false;              ///< ground_range_rate is explained by a standing object.
+  double ground_range_rate_mps = 0.0;  ///< With the antenna's own motion taken out; 0 = stationary.
+  bool is_static = false;              ///< ground_range_rate is explained by a stationary object.
   double near_range_m = 0.0;           ///< Of the nearest reflection.
   double radial_extent_m = 0.0;        ///< Farthest minus nearest range in the cluster.
   double azimuth_min_rad = 0.0;        ///< Right edge.
   double azimuth_max_rad = 0.0;        ///< Left edge.
   int object_id = -1;                  ///< The sensor's own object id; -1 = none.
   bool is_object = false;  ///< From a sensor that tracks by itself (RadarOutput::kObjects).
-  /// Share of the vehicle that this look could see, by azimuth; set once a track is given it. The
-  /// rest lies past the field of view or behind something.
+  /// Share of the vehicle that this frame could observe, by azimuth; set once a track is given it.
+  /// The rest lies past the field of view or is occluded.
   double visible_share = 1.0;
 };
 

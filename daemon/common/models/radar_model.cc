@@ -17,7 +17,7 @@ constexpr double kPoint_m = 1e-3;
 // body puts them (wheels, corners, plate) and stay there from scan to scan.
 constexpr double kLastingSpread = 0.04;
 // What is not seen shifts the mean of the rest, by up to half of its own length: for one face
-// (1 - s)^2 x spread. The same part stays unseen from scan to scan: so many looks count as one.
+// (1 - s)^2 x spread. The same part stays unseen from scan to scan: so many scans count as one.
 constexpr double kUnseenLooks = 8.0;
 // Vehicles longer than this are measured at the end they turn to the radar, from this far before
 // it.

@@ -6,7 +6,7 @@
 
 namespace v2vouch {
 
-/// Watches whether a radar still looks where the configuration says.
+/// Watches whether a radar still points where the configuration says.
 struct MountMonitorConfig {
   bool enabled = true;
   double min_speed_mps = 5.0;           ///< Slower, Doppler says too little of direction.

@@ -40,7 +40,7 @@ class StandingWorld {
 
   void Read(const RadarScan& scan, const RadarConfig& radar, double yaw_rate_radps);
 
-  /// Who agrees with `speed_mps` to within 3 sigma (0.2 m/s at least).
+  /// Support for `speed_mps` to within 3 sigma (0.2 m/s at least).
   [[nodiscard]] SpeedSupport Of(double speed_mps) const;
   /// The speed with most support, among those from `low_mps` to `high_mps`.
   [[nodiscard]] SpeedSupport Strongest(double low_mps, double high_mps);

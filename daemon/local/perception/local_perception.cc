@@ -10,7 +10,7 @@ namespace v2vouch {
 namespace {
 
 // A hidden vehicle is detected now and then after all: multipath, gaps, a wrong idea of the scene.
-// Worked example in notes on tracking: at 0.02 a track keeps r = 0.95 through 80 misses.
+// With r <- r (1 - p) / (1 - r p) a track at r = 0.99 still has 0.95 after 80 misses of p = 0.02.
 constexpr double kHiddenDetection = 0.02;
 // Where the map cannot say, a miss is weak evidence at most.
 constexpr double kUnknownDetection = 0.3;
@@ -121,7 +121,7 @@ void LocalPerception::Look(const EgoState& ego) {
   visibility_.SetScene(ego, occluders_);
 }
 
-// Mirror images behind a wall must not make it transparent: a camera has seen the vehicle too.
+// Multipath ghosts behind a wall must not make it transparent: a camera has seen the vehicle too.
 void LocalPerception::SeeThrough() {
   const auto tracks = tracker_.tracks();
   for (const SensorUpdate& update : tracker_.updates()) {

@@ -34,7 +34,7 @@ class LocalPerception {
 
   void OnEgoMotion(const EgoMotion& sample);
 
-  /// One frame: preprocess, predict, look, associate, update. `frame` is reused.
+  /// One frame: preprocess, predict, set the scene, associate, update. `frame` is reused.
   /// @return why the frame could not be used (then `frame` is untouched), or nullopt.
   std::optional<Reason> OnRadarScan(const RadarScan& scan, RadarPreparation& prepared,
                                     LocalFrame& frame);

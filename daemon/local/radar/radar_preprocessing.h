@@ -16,7 +16,7 @@
 
 namespace v2vouch {
 
-/// Settings of the radar stage (DESIGN 5.1).
+/// Settings of the radar stage: from reflections to clusters with Doppler and extent.
 struct RadarPreprocessingConfig {
   double min_snr_db = 6.0;      ///< Weaker reflections are dropped, where the sensor gives SNR.
   double min_rcs_dbsm = -15.0;  ///< Smaller ones too, where it gives RCS: up to 10 m ...
@@ -54,7 +54,7 @@ struct RadarPreprocessingConfig {
   }
 };
 
-/// What a standing object at azimuth `a` seems to do because the antenna moves, and the reverse:
+/// Apparent Doppler of a stationary object at azimuth `a` due to the antenna's motion, and reverse:
 ///
 ///     ground range rate = range rate + v_R . [cos a, sin a],   v_R = R_RB [v - w y, w x]
 ///
@@ -71,10 +71,10 @@ AntennaMotion MotionOfAntenna(const RadarConfig& radar, const EgoState& ego);
 /// *Dropped*: not finite, outside the sensor's range or (by more than 3 sigma) azimuth limits,
 /// too weak. NaN in SNR or RCS means the sensor has none and drops nothing.
 ///
-/// *Standing*: |ground range rate| <= max(static_speed, 3 sigma), where sigma holds Doppler noise,
-/// azimuth noise x the antenna's speed across the ray, and the ego's own speed and yaw rate noise.
-/// A vehicle crossing the ray shows no Doppler and passes as standing too: is_static says what one
-/// look can say, no more. Standing and moving reflections never share a cluster, so a close
+/// *Stationary*: |ground range rate| <= max(static_speed, 3 sigma), where sigma holds Doppler
+/// noise, azimuth noise x the antenna's speed across the ray, and the ego's own speed and yaw rate
+/// noise. A vehicle crossing the ray shows no Doppler and counts as stationary too: is_static is
+/// what one scan alone can say. Stationary and moving reflections never share a cluster, so a close
 /// crossing vehicle may come out in two or three clusters.
 ///
 /// *One vehicle in pieces*: moving clusters that can be one vehicle are joined (vehicle_merge.h),

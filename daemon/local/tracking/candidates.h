@@ -28,7 +28,7 @@ struct Candidate {
   bool may_start = false;
 };
 
-/// The candidates of one look, searchable by place, so that a track meets only those near it.
+/// The candidates of one frame, searchable by position: a track is compared with near ones only.
 class Candidates {
  public:
   void Clear() { all_.clear(); }

@@ -11,8 +11,8 @@ namespace {
 constexpr int kClearHits = 2;
 // A range that only a camera's bottom edges give must be at least this good.
 constexpr double kMostGuess_m = 2.5;
-// What no picture shows although it should is a mirror image, or a vehicle that the camera is blind
-// for. Images come and go within tenths of a second.
+// What no picture shows although it should is a multipath ghost, or a vehicle that the camera
+// is blind for. Ghosts come and go within tenths of a second.
 constexpr int kMissingPictures = 2;
 constexpr double kLastingImage_s = 1.0;
 constexpr int kLastingHits = 15;

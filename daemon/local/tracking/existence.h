@@ -8,7 +8,7 @@
 
 namespace v2vouch {
 
-/// Existence after a look that did not see the vehicle: r (1 - p) / (1 - r p).
+/// Existence after a frame that did not detect the vehicle: r (1 - p) / (1 - r p).
 double ExistenceAfterMiss(double existence, double detection_probability);
 
 /// Existence of a track that one measurement starts, where newcomers and clutter are to be expected

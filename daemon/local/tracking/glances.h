@@ -10,8 +10,8 @@
 
 namespace v2vouch {
 
-/// The last boxes of a track that only cameras have seen, kept to try places against: something
-/// that stands must have been in all of these directions, and under the right depression.
+/// The last boxes of a track that only cameras have seen, kept to test positions against: a
+/// stationary object must have been in all of these directions, and under the right depression.
 class Glances {
  public:
   static constexpr std::size_t kMost = 8;
@@ -20,8 +20,8 @@ class Glances {
   void Add(const CameraLook& look, const CameraMeasurement& z);
   [[nodiscard]] std::size_t size() const { return count_; }
 
-  /// How badly a standing point at `p_O` fits: sum over the boxes of squared, normalised depression
-  /// errors. nullopt where it is outside of the bearings of a box.
+  /// How badly a stationary point at `p_O` fits: sum over the boxes of squared, normalised
+  /// depression errors. nullopt where it is outside of the bearings of a box.
   [[nodiscard]] std::optional<double> Misfit(const Eigen::Vector2d& p_O) const;
   /// Distance of a point from where the last box was seen.
   [[nodiscard]] double RangeTo(const Eigen::Vector2d& p_O) const;

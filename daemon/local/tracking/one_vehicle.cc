@@ -88,7 +88,7 @@ bool Tracker::IsWithin(std::size_t i, std::size_t j) const {
   if (i == j || hidden_[j].is_dead || !IsSenior(old, young) || SeenAsTwo(j, i)) return false;
   const Eigen::Vector2d between = Eigen::Rotation2D<double>(-old.state_O.mean[kYaw]) *
                                   (young.state_O.mean.head<2>() - old.state_O.mean.head<2>());
-  // A long vehicle's end is not known well: what nobody named may be a part of it.
+  // A long vehicle's end is not known well: an unclassified track may be a part of it.
   const double beyond =
       young.object_class == ObjectClass::kUnknown
           ? std::min(old.extent.length_sigma_m, kMaxEndDoubt_m) + 0.25 * young.extent.length_m

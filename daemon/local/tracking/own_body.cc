@@ -9,8 +9,8 @@ namespace v2vouch {
 namespace {
 
 // Water on a radome, a tow bar, a bicycle rack: nearer to an antenna than this, or in the car's own
-// path and nearer than that to its body. Nobody drives there, and who stands there came from
-// elsewhere or is in a picture.
+// path and nearer than that to its body. No vehicle drives there, and a vehicle that
+// stands there came from elsewhere or is in a picture.
 constexpr double kBeforeAntenna_m = 2.0;
 constexpr double kInPath_m = 2.5;
 constexpr double kPathMargin_m = 0.3;

@@ -12,7 +12,7 @@
 namespace v2vouch {
 namespace {
 
-// Across the line of sight one look says nothing about the velocity: road traffic, 1 sigma.
+// Across the line of sight one frame says nothing about the velocity: road traffic, 1 sigma.
 constexpr double kCrossSpeedSigma_mps = 10.0;
 constexpr double kCameraSpeedSigma_mps = 8.0;
 constexpr double kPairedSpeedSigma_mps = 2.0;

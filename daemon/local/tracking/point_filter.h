@@ -10,7 +10,7 @@
 namespace v2vouch {
 
 /// Position and velocity of a vehicle's reflecting point in O, constant velocity with white
-/// acceleration: less of it, the surer it is that the point is slow. One look gives the radial
+/// acceleration: less of it, the surer it is that the point is slow. One frame gives the radial
 /// velocity only, so a new track has no direction yet that a model of a vehicle could start from.
 class PointFilter {
  public:

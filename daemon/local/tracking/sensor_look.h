@@ -10,7 +10,7 @@
 
 namespace v2vouch {
 
-/// One radar or camera together with the ego's state at the moment it looked; both outlive it.
+/// One radar or camera together with the ego's state at its frame; both outlive it.
 struct RadarLook {
   RadarLook(const EgoState& ego_state, const RadarConfig& config);
   const EgoState& ego;

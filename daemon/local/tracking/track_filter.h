@@ -50,7 +50,7 @@ class TrackFilter {
   /// does not know better.
   bool Update(const PoseMeasurement& measurement);
 
-  /// Takes the class's typical size for what nobody measured yet.
+  /// Takes the class's typical size for dimensions without a measurement.
   void SetClass(ObjectClass object_class);
 
   /// A part of it was found this far behind its near face (Lengthen of models/extent.h); a point

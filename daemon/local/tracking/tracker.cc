@@ -25,8 +25,8 @@ constexpr double kBoxWidthSpan_rad = 0.3;
 constexpr double kDepressionSpan_rad = 0.2;
 // Unpublished tracks go below this.
 constexpr double kForget = 1e-5;
-// For the choice of an assignment a young track counts at least this much, so that its second look
-// reaches it and does not start a third track beside it. Existence itself uses the true value.
+// For the choice of an assignment a young track counts at least this much, so that its second hit
+// reaches it and does not start another track beside it. Existence itself uses the true value.
 constexpr double kAssignmentExistence = 0.05;
 // A track just outside of a sensor's view may still be seen by it.
 constexpr double kMinDetection = 0.02;
@@ -35,7 +35,7 @@ constexpr double kSureExistence = 0.9999;
 constexpr double kCoarseSigmas = 4.7;
 // Sensor numbers as in PackId.
 constexpr int kFirstCamera = 8;
-// A look that would have found the vehicle about as likely as not, and a picture that should have.
+// Detection probability of a frame in clear view, and of a picture that should show the vehicle.
 constexpr double kClearLook = 0.4;
 constexpr double kExpectedInPicture = 0.7;
 // How long a hidden track is kept for each second it was known.

@@ -25,7 +25,7 @@
 
 namespace v2vouch {
 
-/// Settings of LOCAL fusion (DESIGN 5.4).
+/// Settings of LOCAL fusion: births, confirmation, existence and what is published.
 struct TrackerConfig {
   MotionNoise motion;
   bool point_targets = false;          ///< Detections are of the centre: no extent model.
@@ -96,19 +96,17 @@ struct PoseUpdate {
 /// log-likelihood ratio with exact assignment in gated clusters, existence from marginals, birth
 /// from what is left. Copyable: a copy is a checkpoint. Same inputs, same bits.
 ///
-/// - A moving radar cluster starts a track, a camera box too. A
-/// standing
+/// - A moving radar cluster starts a track, a camera box too. A stationary
 ///   cluster starts none; it keeps alive what a camera named or what was seen moving. Nothing is
 ///   published that was not seen twice by a camera or in motion.
-/// - A published track is one that is worth it: with D the expected squared error cut off at c^2,
-///   listing a vehicle of existence r costs less than leaving it out where
+/// - A track is published if that lowers expected squared GOSPA (p = 2): with D the expected
+///   squared error cut off at c^2 and m the trace of the position covariance, where its existence r
 ///
-///       r > c^2 / (2 (c^2 - D)),   D = m (1 - exp(-c^2 / m)),  m = trace of the position
-///       covariance
+///       r > c^2 / (2 (c^2 - D)),   D = m (1 - exp(-c^2 / m))
 ///
-///   (the expected squared GOSPA, p = 2). A coasting track of which that is no longer true ends.
+///   A coasting track that no longer fulfils this ends.
 /// - Misses of a published track follow from each other: what the visibility did not know of hides
-///   it in the next look too. A look after dt counts as min(1, dt / miss_memory_s) of one, which
+///   it in the next frame too. A frame after dt counts as min(1, dt / miss_memory_s) of one, which
 ///   also makes a track's end a matter of time and not of the sensors' rates.
 /// - A standing return keeps a track alive but makes its existence no likelier than pictures and
 ///   motion have: something that is no vehicle and stands there would be seen as well.
@@ -116,15 +114,14 @@ struct PoseUpdate {
 ///   track, it takes that of the nearest standing return inside the box's bearings and three sigma
 ///   of its range. What is nearer would cover the vehicle, what is farther is covered by it. Where
 ///   a return there moves, the box waits for a track of that.
-/// - What no picture shows and has never been anywhere but at the car itself (water on a radome, a
-///   tow bar) is published as little as what a camera sees another vehicle through.
-/// - A further cluster inside a tracked vehicle's footprint with its Doppler belongs to that
-/// vehicle:
-///   it joins the measurement and starts nothing.
-/// - Two tracks on one footprint with one velocity are one vehicle: the younger goes. So does one
-/// on
-///   the axis behind a lorry's or bus's near face, as far as such a vehicle may reach, unless one
-///   picture has shown both: the other is lengthened.
+/// - Two kinds of tracks without a picture are not published: one that has only ever been at
+///   the car itself (water on a radome, a tow bar), and one through which a camera sees another
+///   vehicle.
+/// - A further cluster inside a tracked vehicle's footprint with its Doppler belongs to
+///   that vehicle: it joins the measurement and starts nothing.
+/// - Two tracks on one footprint with one velocity are one vehicle: the younger goes. So does
+///   one on the axis behind a lorry's or bus's near face, as far as such a vehicle may reach,
+///   unless one picture has shown both: the other is lengthened.
 class Tracker {
  public:
   Tracker(const TrackerConfig& config, const VehicleConfig& vehicle);

@@ -59,12 +59,12 @@ Extent AssumedExtent(const ExtendedState& state, const FilterSettings& settings)
   return settings.point_targets ? Extent{0.0, 0.0, 0.0, 0.0} : state.assumed_extent();
 }
 
-// A standing vehicle shows a radar the same reflections in scan after scan: as evidence for an axis
-// they would count again and again, always for the axis that allows them the least scatter.
+// A stationary vehicle shows a radar the same reflections in scan after scan: as evidence for an
+// axis they would count again and again, always for the axis that allows them the least scatter.
 bool SpeaksOfAxis(const RadarMeasurement& z) { return !z.is_static; }
 bool SpeaksOfAxis(const CameraMeasurement&) { return true; }
 
-// States that a look may not teach, as bits.
+// States that a measurement may not change, as bits.
 unsigned Frozen(const ExtendedState& state, const Eigen::Vector2d& seen_from_O) {
   const Eigen::Vector2d line = (state.mean.head<2>() - seen_from_O).normalized();
   const double aspect = std::atan2(line.y(), line.x()) - state.mean[kYaw];

@@ -222,7 +222,7 @@ VisibilityMap::Answer VisibilityMap::AskCamera(int index, const Occluder& footpr
   return Ask(&CameraAt(index), Box(footprint));
 }
 
-// `first` looks first, if given: where it sees the place clear the others are not asked.
+// `first` is asked first, if given: where its view is clear the others are not asked.
 VisibilityMap::Answer VisibilityMap::Ask(const Sensor* first, const Box& footprint) const {
   Answer answer;
   const auto rank = [](View view) {

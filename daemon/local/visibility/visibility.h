@@ -45,15 +45,15 @@ struct SensorView {
 };
 
 /// Azimuth-range occlusion round each sensor from tracked boxes and accumulated static returns
-/// (DESIGN 5.3), on flat ground: boxes and walls block, nothing is seen over or under them.
+/// on flat ground: boxes and walls block, nothing is seen over or under them.
 ///
-/// A footprint is looked at along rays spread over its azimuth span, widened by 3 sigma of its
+/// A footprint is sampled along rays spread over its azimuth span, widened by 3 sigma of its
 /// position. Each ray is
 /// - *covered by a box* that begins nearer than the footprint does. Outlines are blurred by margin
 ///   and the box's own sigma: 0.5 on the edge, 1 from there inwards, 0 outwards. A box of the same
 ///   id, or one that holds the footprint's centre (the vehicle itself), covers nothing.
 /// - *covered by a structure*: an active static cell with others 3 to 4.5 m off, nearer than the
-///   footprint's nearest point by more than margin + cell + sigma, so that a standing vehicle's
+///   footprint's nearest point by more than margin + cell + sigma, so that a stationary vehicle's
 ///   own returns do not hide it.
 /// - *possibly covered* by any other active static cell (a pole): half.
 /// Static cells through which a vehicle was measured cover nothing (a guard rail, a hedge).
@@ -69,13 +69,13 @@ class VisibilityMap {
  public:
   VisibilityMap(const VisibilityConfig& config, const VehicleConfig& vehicle);
 
-  /// Adds the standing returns of one scan to the raster in O. Returns inside a box of the present
-  /// scene are that vehicle's own and are left out.
+  /// Adds the stationary returns of one scan to the raster in O. Returns inside a box of the
+  /// present scene are that vehicle's own and are left out.
   void AccumulateStatic(Timestamp stamp, const EgoState& ego,
                         std::span<const RadarMeasurement> measurements);
 
-  /// A vehicle that is surely one was measured by a radar: what the raster has in front of it does
-  /// not hide. Place as of SetScene.
+  /// A radar has measured a certain vehicle here: the static cells in front of it hide nothing. Ego
+  /// pose as of SetScene.
   void SeeThrough(const RadarMeasurement& measurement);
 
   /// Sets the scene for queries: where the ego is, and the tracked boxes.
@@ -86,15 +86,15 @@ class VisibilityMap {
   [[nodiscard]] SensorView FromRadar(int index, const Occluder& footprint) const;
   [[nodiscard]] SensorView FromCamera(int index, const Occluder& footprint) const;
 
-  /// Whether a radar has met something standing within `within_m` of a place lately. What lies in
-  /// the box of a track is not counted.
+  /// Whether a radar has lately measured something stationary within `within_m` of a position.
+  /// Returns in the box of a track do not count.
   [[nodiscard]] bool HasStandingReturn(const Eigen::Vector2d& p_O, double within_m) const;
 
   /// Best answer over all sensors: clear if any sees it clear, else unknown if any is unknown, else
   /// occluded if any has it in its field of view, else out of view.
   [[nodiscard]] View Overall(const Occluder& footprint) const;
 
-  /// One sensor's answer and Overall's at the price of little more than one look.
+  /// One sensor's answer and Overall's at the cost of little more than one query.
   struct Answer {
     SensorView sensor;
     View overall = View::kOutOfView;

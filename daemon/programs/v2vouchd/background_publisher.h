@@ -11,7 +11,7 @@
 
 namespace v2vouch {
 
-/// Publishes large messages that nobody drives by, such as the list of a thousand senders (1 MB in
+/// Publishes large diagnostic messages, such as the list of a thousand senders (1 MB in
 /// some hundred datagrams), from a thread and a socket of its own: no list waits for them. Where it
 /// cannot keep up the newest message wins.
 class BackgroundPublisher {

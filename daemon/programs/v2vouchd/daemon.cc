@@ -34,7 +34,7 @@ constexpr milliseconds kStatusAtLatest{1100};  // Where no message comes.
 constexpr int kMostRefusalLines = 20;          // Per second.
 constexpr milliseconds kSuspended{500};        // Between two turns of the loop.
 
-// Arrival on a clock that nobody sets.
+// Arrival on a clock that is never set.
 Timestamp ArrivalTime(Clock::time_point at) {
   return Timestamp(std::chrono::duration_cast<Duration>(at.time_since_epoch()));
 }
@@ -58,7 +58,7 @@ class Daemon {
       const bool is_bsm = channel.kind == wire::InputKind::kBsm;
       (is_bsm && has_own_v2v_bus ? v2v : own).push_back({channel.name, SinkOf(channel)});
     }
-    // Never an input: heard only to notice that somebody else sends them too.
+    // Never an input: heard only to notice that another program sends them too.
     for (const std::string* output : WatchedOutputs()) {
       own.push_back({*output, [this](std::span<const std::uint8_t> bytes, std::size_t, Timestamp) {
                        foreign_.Heard(bytes);
@@ -146,7 +146,7 @@ class Daemon {
 
   // Lists go on without frames, marked stale; a status comes even where no message does.
   void OnTime(Clock::time_point now) {
-    // Who was not running cannot know what came meanwhile: it waits in the sockets.
+    // After a suspension of the process its inputs still wait in the sockets: no silence yet.
     if (now - last_tick_ > kSuspended) {
       last_list_ = now;
       stale_round_ = 0;

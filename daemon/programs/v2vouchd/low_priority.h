@@ -7,7 +7,7 @@
 namespace v2vouch {
 
 /// The calling thread, and those it starts from now on, step back behind all others where the
-/// processor is short. For what nobody drives by.
+/// processor is short. For diagnostics.
 inline void LowerThreadPriority() {
   constexpr int kNice = 10;
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);

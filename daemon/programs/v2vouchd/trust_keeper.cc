@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The ages in the file count from when it was written; only "relied on until now" has to be
+// The ages in the file count from when it was written; only "validated until now" has to be
 // renewed.
 constexpr std::chrono::seconds kRenew{30};
 

@@ -34,8 +34,8 @@ struct LcmConfig {
   }
 };
 
-/// What the daemon keeps over a restart: penalties of senders, and who was relied on. Tracks start
-/// from scratch. Replay reads it where asked, with --state.
+/// What the daemon keeps over a restart: penalties of senders, and which were validated. Tracks
+/// start from scratch. Replay reads it where asked, with --state.
 struct StateConfig {
   bool enabled = true;
   /// From this file's folder; "" = trust.state in the environment's STATE_DIRECTORY (a service of

@@ -11,7 +11,7 @@ namespace {
 // A larger step is a sender that started again, not a loss.
 constexpr std::int64_t kLargestGap = 100'000;
 constexpr double kPeriodsUntilSilent = 3.0;
-// Worth telling somebody.
+// Silence worth a notice.
 constexpr double kPeriodsUntilNotice = 5.0;
 constexpr double kNoticeAtLeast_s = 1.0;
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLattice_rad = FromDegrees(0.01);
 // A fix that says nothing of its accuracy; phone grade (95 % about 5 m under open sky).
 constexpr double kUnknownSigma_m = 2.5;
-// Beyond this a fix is no help to anybody 100 m away.
+// Beyond this a fix does not help to place a vehicle 100 m away.
 constexpr double kUselessSigma_m = 50.0;
 constexpr double kUnknownVelocitySigma_mps = 0.2;
 constexpr double kMinVelocitySigma_mps = 0.05;

@@ -39,7 +39,7 @@ struct AlignmentConfig {
   }
 };
 
-/// Where O lies in the local east-north-up plane L (DESIGN 5.5). Copyable.
+/// Where O lies in the local east-north-up plane L. Copyable.
 ///
 ///     p_L = X_LO * p_O,  X_LO estimated by an EKF over GNSS positions, courses and headings
 ///

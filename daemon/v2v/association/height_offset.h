@@ -19,21 +19,21 @@ struct HeightWitness {
 };
 
 /// What all heights differ by from the ego's: sea level against ellipsoid, or an elevation that was
-/// left at 0. Such a constant is no bridge. It is taken for one frame of reference with two zeros
-/// only where the sensors say that senders who tell it drive on our road:
+/// left at 0. Such a constant is no bridge. It is accepted as another zero only where the sensors
+/// confirm that the senders that report it drive on our road:
 ///
 /// - below 20 m, which is what bridges and stacked roads have: two senders that LOCAL tracks agree
-///   with over 50 m of way tell the same difference. One alone never opens it: on two decks cars
+///   with over 50 m of way report the same difference. One alone never opens it: on two decks cars
 ///   can keep pace for long.
 /// - from 20 m up, where roads cross but do not run above one another at one pace: two senders over
-///   10 m, or one, where nobody heard tells another difference, over 10 m (25 m if nobody else is
+///   10 m, or one, where no other difference is reported, over 10 m (25 m if no other sender is
 ///   heard at all).
 ///
-/// It takes more such senders than tell the offset in force. A liar gains nothing by it: the rule
-/// about levels does not apply to whoever tells no elevation at all. No offset (0) wins every tie,
-/// and returns as soon as as many senders that sensors agree with tell it: a liar cannot push
-/// honest senders onto another level for as long as one of them is seen. A new offset holds for as
-/// long as nothing speaks against it. Copyable.
+/// It takes more such senders than report the offset in force. A liar gains nothing by it: the rule
+/// about levels does not apply to a sender without elevation. No offset (0) wins every tie, and
+/// returns as soon as as many senders that the sensors confirm report it: a liar cannot push
+/// honest senders onto another level for as long as one of them is seen. A new offset holds until
+/// evidence speaks against it. Copyable.
 class HeightOffset {
  public:
   /// @param witnesses all senders heard lately that tell a height, in any order.
@@ -46,7 +46,7 @@ class HeightOffset {
   /// nullopt: they do not, or there is none.
   [[nodiscard]] std::optional<double> unexplained_m() const { return unexplained_m_; }
 
-  /// How far two senders who tell the same may be apart.
+  /// How far two reports of the same difference may be apart.
   static constexpr double kSame_m = 3.0;
   static constexpr double kBridge_m = 20.0;
   static constexpr double kLeastWay_m = 10.0;

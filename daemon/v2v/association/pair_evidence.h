@@ -46,9 +46,9 @@ class PairEvidence {
   void Add(const PairObservation& observation, const AssociationConfig& config);
 
   [[nodiscard]] double score() const { return fading_ - level_; }
-  /// How unlikely the learnt bias is. Every vehicle that stands or drives like the
-  /// track, at whatever distance, agrees with it message by message once its offset is learnt:
-  /// however long the agreement lasts, only the level tells the neighbour from the track itself.
+  /// How unlikely the learnt bias is. A neighbour that moves like the track, at any distance,
+  /// agrees with it message by message once its offset is learnt: only the level distinguishes the
+  /// neighbour from the track itself, however long the agreement lasts.
   [[nodiscard]] double level() const { return level_; }
   /// The same, were the sender another vehicle, so far from the track [m, axes of O].
   [[nodiscard]] double LevelBeside(const Eigen::Vector2d& offset_O) const {
@@ -61,12 +61,12 @@ class PairEvidence {
   [[nodiscard]] double span_s() const { return ToSeconds(last_ - first_); }
   [[nodiscard]] double mean_nis() const { return mean_nis_; }
   /// Mean NIS (2 dof) below the upper end of its 99 % band, and the latest within the 99 % gate:
-  /// nobody is validated by the message that shows that the track has gone elsewhere. A low NIS is
-  /// a sender better than it says, which is no fault.
+  /// a message that shows that the track has switched elsewhere validates no sender. A low NIS is a
+  /// sender more accurate than it reports, which is no fault.
   [[nodiscard]] bool is_nis_consistent() const;
   /// Mean of claimed minus sensed speed over the last 20 messages within max_speed_mps and the
   /// mean sigma. A car that passes in the next lane may pair for seconds with a bias that moves
-  /// along; its speed tells at once.
+  /// along; its speed shows the difference at once.
   [[nodiscard]] bool is_speed_consistent(const AssociationConfig& config) const;
   [[nodiscard]] const Eigen::Vector2d& bias() const { return bias_; }
   [[nodiscard]] const Eigen::Matrix2d& bias_covariance() const { return bias_covariance_; }

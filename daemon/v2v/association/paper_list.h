@@ -15,8 +15,8 @@ namespace v2vouch {
 
 /// The priority list as the paper builds it, kept so that reports can show its method beside ours:
 /// every pair of Algorithm 1 is a priority track, fused by inverse covariance, and lives on the
-/// sender's BSMs once its LOCAL track is gone. Two senders near one car give two tracks; whoever
-/// stands where a car is gets validated at once. Copyable; bounded.
+/// sender's BSMs once its LOCAL track is gone. Two senders near one car give two tracks; a
+/// sender that claims the position of a car is validated at once. Copyable; bounded.
 class PaperList {
  public:
   struct Entry {

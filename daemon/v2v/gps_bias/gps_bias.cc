@@ -18,7 +18,7 @@ void GpsBias::AdvanceTo(Timestamp settled) {
   const std::int64_t newest = ToMicros(settled) / kSecond_us;
   std::int64_t second = newest;
   if (!solves_.empty()) {
-    // Where nothing came for long, nobody will ask for the seconds between.
+    // After a long pause the estimates of the seconds between are never asked for.
     second = std::max(ToMicros(*solves_.back().solved_at) / kSecond_us + 1, newest - kSecondsKept);
   }
   for (; second <= newest; ++second) {
@@ -41,9 +41,9 @@ BiasReport GpsBias::Solve(Timestamp second) const {
   for (int round = 0; !blocks.empty(); ++round) {
     const BiasSolution solution = SolveBias(blocks, second, config_);
     if (!solution.is_usable) break;
-    // Who is too far off or changes too much is so by its own residuals: all of a kind go at once.
-    // Who leads the common part astray makes others look as if they did: the worst goes alone, and
-    // when the rounds are used up all that still look so.
+    // A sender too far off or changing too much is judged by its own residuals: all such senders go
+    // at once. A sender that distorts the common part makes others look guilty too: only the worst
+    // goes, and when the rounds are used up all that still look so.
     std::vector<BiasVerdict> verdicts;
     std::size_t worst = blocks.size();
     BiasVerdict gravest = BiasVerdict::kLeadsCommon;

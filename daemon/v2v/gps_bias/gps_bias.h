@@ -13,8 +13,8 @@ namespace v2vouch {
 
 /// GPS bias per sender and common to all, by Ceres over a sliding window of sensor-confirmed
 /// residuals (bias_problem.h). Solved for every whole second of message time; each solve depends on
-/// the window's residuals alone, so that how often AdvanceTo() is called changes nothing. Whoever
-/// is in quarantine has no estimate and no part in the common one: the worst is put there first,
+/// the window's residuals alone, so that how often AdvanceTo() is called changes nothing. A
+/// sender in quarantine has no estimate and no part in the common one: the worst goes there first,
 /// then the rest is solved again, a bounded number of times.
 class GpsBias final : public BiasEstimator {
  public:

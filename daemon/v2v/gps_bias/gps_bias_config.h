@@ -14,7 +14,7 @@ struct GpsBiasConfig {
   double window_s = 60.0;        ///< Residuals older than this are forgotten.
   double knot_s = 10.0;          ///< Of the wandering part, which is linear between knots.
   int min_residuals = 10;        ///< Of a sender in the window; below, nothing is said of it.
-  int max_senders = 32;          ///< The table's size; whoever was silent longest makes room.
+  int max_senders = 32;          ///< The table's size; the sender silent for longest is evicted.
   double common_sigma_m = 1.5;   ///< What all are off by: the ego's own error, per axis.
   double sender_sigma_m = 1.5;   ///< A sender's own constant part, per axis.
   double wander_sigma_m = 0.5;   ///< A sender's wandering part: first-order Gauss-Markov ...
@@ -25,7 +25,7 @@ struct GpsBiasConfig {
   double max_change_m = 3.0;     ///< Of the wandering part within a window; honest ones stay below.
   double null_chi_square = 3.5;  ///< Wandering, per degree of freedom; beyond it is no noise.
   int min_common_senders = 3;    ///< Fewer say nothing of what is common.
-  double leave_one_out_gate = 13.8;  ///< Chi-square, 2 dof: whom the common part hangs on alone.
+  double leave_one_out_gate = 13.8;  ///< Chi-square, 2 dof: one sender alone moves the common part.
 
   template <class Archive>
   void Visit(Archive& a) {

@@ -74,13 +74,12 @@ struct RemoteSolution {
 /// wandering too much, too late, turned about the ego): quarantine.
 /// @param pairs of this sender, in order of time.
 /// @param consider_m what stage A's own uncertainty adds to every place alike, 1 sigma per axis at
-///        range 0, and consider_rad per range: held, never estimated from what strangers say.
+///        range 0, and consider_rad per range: held, never estimated from claims of senders.
 RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs, double consider_m,
                            double consider_rad, const RemoteRules& rules);
 
 /// All senders, then leave-one-out on what they have in common: with three ESTIMATED or more,
-/// whoever lies farther from the mean of the others than honest receivers' spread allows is
-/// REJECTED.
+/// a sender farther from the mean of the others than honest receivers' spread allows is REJECTED.
 std::vector<RemoteSolution> SolveRemotes(const std::vector<RemotePair>& pairs, double consider_m,
                                          double consider_rad, const RemoteRules& rules);
 

@@ -34,8 +34,8 @@ class ResidualWindow {
  public:
   explicit ResidualWindow(const GpsBiasConfig& config) : config_(config) {}
 
-  /// In order of time per sender. One that is not finite, or has no positive covariance, is
-  /// nobody's.
+  /// In order of time per sender. A residual that is not finite, or has no positive covariance, is
+  /// ignored.
   void Add(const BiasResidual& residual);
   /// Drops what no At() from `now` on can ask for.
   void Forget(Timestamp now);

@@ -8,7 +8,7 @@ namespace v2vouch {
 namespace {
 
 constexpr double kLongestSilence_s = 1.0;
-// Whoever turns its heading by more than this between two messages has changed what it tells.
+// A heading that turns by more than this (cosine) between two messages has changed its meaning.
 constexpr double kTurned = -0.7;
 // A displacement of another size than the speed promises settles nothing.
 constexpr double kLeastShare = 0.4;

@@ -27,7 +27,7 @@ class DirectionReading {
  public:
   /// Rewrites course and speed of `claim`, which ToClaim has read as the standard says.
   /// @return true where the meaning of earlier claims has changed: memory of them is void. At most
-  ///   once in kPatience_s, so that nobody clears its record at will.
+  ///   once in kPatience_s, so that a sender cannot clear its record at will.
   bool Read(Transmission transmission, Claim& claim);
 
   static constexpr double kLeastWay_m = 1.5;

@@ -54,7 +54,7 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
   if (HorizontalDistance(ego.p_E, claim.p_E) > config_.max_distance_m) {
     return Reason::kBsmImplausible;
   }
-  // Before the rates: somebody who echoes a sender's messages must not spend its budget.
+  // Before the rates: a device that echoes a sender's messages must not spend the sender's budget.
   const RepeatMemory::Answer heard = repeats_.Look(bsm);
   if (heard.finding == RepeatMemory::Finding::kRepeat) {
     repeats_.Keep(bsm);

@@ -88,11 +88,11 @@ struct SenderTrack {
   /// Of the latest message; none where its motion started anew for a jump or a silence.
   std::optional<double> latest_nis;
   int nis_freedom = 4;          ///< Of latest_nis.
-  std::uint64_t resets = 0;     ///< Times the motion broke off: jumps, long silences.
+  std::uint64_t resets = 0;     ///< Restarts of the motion: jumps, long silences.
   std::uint64_t lost = 0;       ///< Messages missing by msgCnt.
   std::uint64_t over_rate = 0;  ///< Messages refused because the sender speaks too often.
   int msg_count = 0;            ///< Of the latest message.
-  /// The same core data was heard under another id too; who copied whom is not known.
+  /// The same core data was heard under another id too; which is the copy is not known.
   std::uint64_t contested = 0;
   std::optional<Timestamp> last_contested;
 };
@@ -108,10 +108,10 @@ struct SenderTrack {
 /// - rates, of the sender and of all: kBsmRate. Once half of the total budget is spent, only known
 ///   senders are served
 /// - new identities beyond their budget, or no room: kBsmTableFull. Once half of that budget is
-///   spent a newcomer must have knocked before (KnockMemory), so that a flood of identities that
-///   speak once does not keep others out; once the table is half full, the budget binds. A full
-///   table gives up the sender unheard for longest, never a pinned one, never one heard in the last
-///   second
+///   spent a new id is admitted only with its second message within 2 s (KnockMemory), so that a
+///   flood of identities that speak once does not keep others out; once the table is half full, the
+///   budget binds. A full table evicts the sender unheard for longest, never a protected one, never
+///   one heard in the last second
 ///
 /// An accepted claim carries the gravest that the sender's own messages have against it
 /// (SenderChecks), refused ones included.
@@ -128,7 +128,7 @@ class BsmIntake {
   /// second of `now`.
   void Expire(Timestamp now);
 
-  /// A pinned sender keeps its place in a full table while it is heard. No-op when unknown.
+  /// A protected sender is never evicted from a full table while it is heard. No-op when unknown.
   void Pin(SenderId sender, bool is_pinned);
 
   /// Ordered by sender id.

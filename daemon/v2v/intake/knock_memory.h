@@ -9,9 +9,10 @@
 
 namespace v2vouch {
 
-/// Remembers identities that were heard once and not let in, in fixed memory. Who comes back has
-/// knocked; a flood in which every message has an identity of its own never does, and so does not
-/// spend what new senders are allowed.
+/// Admission filter for new identities, in fixed memory. The first message of an unknown id leaves
+/// an admission token (a knock); a second one within 2 s finds it and may be admitted. In a flood
+/// where every message has its own identity no second message comes, so the flood does not spend
+/// the budget of new senders.
 ///
 /// A direct-mapped table of 16384 ids; a newer one takes the place of an older. Among 5000 random
 /// identities a second, one that speaks again 0.1 s later is forgotten in 3 % of all cases.
@@ -19,7 +20,7 @@ class KnockMemory {
  public:
   KnockMemory();
 
-  /// Whether this identity knocked within the last two seconds. Remembers it either way.
+  /// Whether this identity left a token within the last two seconds. Leaves one either way.
   bool Knock(SenderId sender, Timestamp now);
 
  private:

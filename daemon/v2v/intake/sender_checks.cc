@@ -33,7 +33,8 @@ std::optional<Finding> SenderChecks::Judge(const Claim& claim, const SenderTrack
   implausible_.OnMessage(false);
   add(implausible_.Judge(config));
   if (claim.accuracy_is_poor) {
-    // A unit that says itself that it is lost does not lie about its place.
+    // A unit that reports poor accuracy makes no claim about its position: neither position nor
+    // path is judged.
     path_.Restart();
     last_path_.reset();
   } else {
@@ -62,7 +63,7 @@ std::optional<Finding> SenderChecks::JudgeMotion(const Claim& claim, const Sende
     here.credible_s =
         last_->credible_s + std::min(here.claimed_s - last_->claimed_s,
                                      ToSeconds(here.received - last_->received) + config.late_s);
-    // Who tells no course goes wherever it went.
+    // Without a claimed course the direction is that of the displacement.
     if (!claim.has_course && moved_m.norm() > 0.0) direction = moved_m.normalized();
   }
   here.yaw_rad = std::atan2(direction.y(), direction.x());

@@ -14,10 +14,10 @@ namespace v2vouch {
 struct SenderTrack;
 
 /// All checks that need nothing but one sender's own messages, with their memory. Fixed size
-/// (under 2 kB), no allocation. What each looks for stands with it.
+/// (under 2 kB), no allocation. What each finds stands with it.
 ///
-/// What refused messages brought to light (rate, implausible) rides on the sender's next accepted
-/// claim, as does a core heard under another id, within two seconds.
+/// A finding from refused messages (rate, implausible) is attached to the sender's next accepted
+/// claim, as is a core heard under another id, within two seconds.
 class SenderChecks {
  public:
   /// A message that is no repeat, before it is known whether it is taken.
@@ -26,7 +26,7 @@ class SenderChecks {
   void OnOverRate(Timestamp stamp) { rate_.OnRefused(stamp); }
   /// Refused for what it claims.
   void OnImplausible() { implausible_.OnMessage(true); }
-  /// The same core was heard under another id (contested_core). Who copied whom is not known:
+  /// The same core was heard under another id (contested_core). Which is the copy is not known:
   /// relays exist.
   void OnContested(Timestamp stamp) { contested_ = stamp; }
   /// What its heading means has turned out to be the other way (DirectionReading): ways and speeds

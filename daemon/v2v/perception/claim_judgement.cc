@@ -17,7 +17,7 @@ constexpr double kMostAccel_mps2 = 12.0;
 constexpr double kSpeedFloor_mps = 2.0;
 constexpr int kBreakMemory = 30;  // Messages for which a break of the own motion is held against.
 
-// Findings that a second device under the same id brings, whoever of the two lies.
+// Findings that a second device under the same id causes, whichever of the two lies.
 bool IsOfAJump(Check check) {
   return check == Check::kPositionJump || check == Check::kTwoPlaces || check == Check::kOwnMotion;
 }

@@ -10,8 +10,8 @@ namespace v2vouch {
 
 /// Whose fault a finding would be, at this moment.
 struct EgoDoubt {
-  bool is_suspect = false;  ///< The ego's GNSS has jumped: nobody is validated or accused.
-  bool is_shifted = false;  ///< All senders are off alike (common mode): nobody is accused.
+  bool is_suspect = false;  ///< The ego's GNSS has jumped: no validation, no accusation.
+  bool is_shifted = false;  ///< All senders are off alike (common mode): no accusation.
   [[nodiscard]] bool may_accuse() const { return !is_suspect && !is_shifted; }
 };
 
@@ -27,8 +27,8 @@ bool ContinuesLastClaim(const SenderRecord& record, const Claim& claim,
                         const ClaimInOdometry& here);
 
 /// Judges the message by itself and by the one before. Jumps in the message stream do not count
-/// where the sensors see the vehicle just where this claim has it: somebody else may speak under
-/// the id. What a sender says of its motion does count.
+/// where the sensors see the vehicle just where this claim has it: another device may speak under
+/// the id. Claimed speed and heading do count.
 void JudgeMessage(SenderRecord& record, const PriorityVehicle* vehicle, const Claim& claim,
                   const ClaimInOdometry& here, bool may_accuse, const TrustConfig& config);
 

@@ -24,12 +24,12 @@ std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> ObserveClaimedPosition(
 bool IsPositionShared(const V2vView& view, const SenderRecord& record, Timestamp now);
 
 /// Whether a vehicle may be unseen just before or behind the LOCAL track that the sender is
-/// assigned to: in a queue both stand still, and a GNSS bias of half the headway fits either.
+/// assigned to: in a queue both are stationary, and a GNSS bias of half the headway fits either.
 UnseenNeighbours FindUnseenNeighbours(const V2vView& view, const SenderRecord& record,
                                       const LocalFrame& frame, const VisibilityMap& map);
 
 /// By how much (log-likelihood) the pair's track fits better than its unseen neighbours; 0 where
-/// nobody has looked for them yet, infinity where there are none.
+/// they have not been searched yet, infinity where there are none.
 double MarginOverUnseen(const SenderRecord& record, const PairTable::Pair& pair);
 
 }  // namespace v2vouch

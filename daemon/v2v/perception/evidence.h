@@ -24,9 +24,9 @@ bool WasHitLately(const LocalTrack& track, Timestamp now);
 /// Standard deviation of the position along the worse of the two axes of O [m].
 double PositionSigma(const KinematicState& state);
 
-/// A claim beside a LOCAL track that has been predicted to the claim's time. Both may tell the same
-/// motion with opposite fronts (reversing, a standing car of unknown direction): the reading in
-/// which they agree better counts.
+/// A claim beside a LOCAL track that has been predicted to the claim's time. Both may describe the
+/// same motion with opposite fronts (reversing, a stationary car of unknown direction): the reading
+/// in which they agree better counts.
 PairObservation Compare(const ClaimInOdometry& claim, const KinematicState& sensed);
 
 /// The same for the trust checks: raw residuals, the sensors' own uncertainty beside them.

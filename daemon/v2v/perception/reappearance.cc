@@ -15,19 +15,19 @@ constexpr double kReturnGate = 13.8;    // Chi-square, 2 dof, 0.999.
 constexpr double kReturnFloor_m = 0.7;  // Extent and reference point of a young track.
 constexpr double kReturnSpeed_mps = 4.0;
 // How far a vehicle that comes back may be from where its sender says, bias taken off: less across
-// than along, where lanes lie and where the sender's own age of position does not reach. Beside it
-// twice the doubt, but a track that is not known better than this is not taken for anybody.
+// than along, where lanes lie and where the sender's own age of position does not reach. Twice the
+// track's sigma comes on top, but a track known worse than kMostDoubt is never accepted.
 constexpr double kClaimedAlong_m = 2.5;
 constexpr double kClaimedAcross_m = 1.2;
 constexpr double kClaimedSpeed_mps = 2.5;
 constexpr double kMostDoubt_m = 1.5;
 constexpr double kMostDoubt_mps = 1.5;
-constexpr double kSlack_s = 0.5;     // A track born so long before the loss may still be its heir.
+constexpr double kSlack_s = 0.5;     // A track born so long before the loss may be the vehicle.
 constexpr double kPatience_s = 0.5;  // Hits of a return may lie so far apart.
-// The reach of the coast is capped for what nobody sees; seen again, a car that has sped up or
-// turned meanwhile may be farther off.
+// The reach of the coast is capped for an unseen vehicle; a car that is seen again and has sped up
+// or turned meanwhile may be farther off.
 constexpr double kSeenReach = 1.5;
-// A coast less certain than this contradicts nobody.
+// A coast less certain than this contradicts no track.
 constexpr double kUsefulCoast_m = 4.0;
 constexpr double kCoastGate = 9.21;
 constexpr double kSameSpeed_mps = 3.0;

@@ -16,7 +16,7 @@ bool IsWhereClaimed(const V2vView& view, const LocalTrack& track, const Priority
 /// Whether the sensors have seen the hidden vehicle again within the last half second.
 bool IsReappearing(const PriorityVehicle& vehicle, Timestamp stamp, const BridgeConfig& config);
 
-/// A hidden vehicle comes back as its own LOCAL track, or as the nearest new one that nobody holds.
+/// A hidden vehicle comes back as its own LOCAL track, or as the nearest new one without a vehicle.
 /// Counts hits; after BridgeConfig::regain_hits the vehicle is supported by that track again.
 /// @return whether it has just become so.
 bool UpdateReappearance(const V2vView& view, PriorityVehicle& vehicle, Timestamp stamp);

@@ -17,7 +17,7 @@ EgoPlace PlaceOf(const Alignment& alignment, const EgoState& ego, const VehicleC
 
 /// TRACKS_V2V: every sender as heard, its own filtered claim carried forward to the list's time and
 /// brought into O, with its trust and bias (of its vehicle's filter where it has one, else as last
-/// settled). Nobody drives by it, so nobody waits for it: a list of many senders is made in pieces,
+/// settled). Diagnostic, so no other list waits for it: a list of many senders is made in pieces,
 /// one with each input that is no frame. Empty where the alignment is not ready.
 class SenderList {
  public:

@@ -14,8 +14,8 @@ namespace v2vouch {
 
 /// Which sender may be which LOCAL track: the pairs of senders on the ego's level, which are
 /// matched one to one, and apart from them the pairs of senders on another level. Those take no
-/// track and rival nobody, but should the difference in height turn out to be common to all, their
-/// observations count. Copyable: part of every checkpoint.
+/// track and compete with no pair, but should the difference in height turn out to be common to
+/// all, their observations count. Copyable: part of every checkpoint.
 class SenderPairs {
  public:
   /// Adds a claim to the evidence of each LOCAL track near by (20 m), and matches anew.

@@ -27,7 +27,7 @@ struct TrackSnapshot {
   bool is_hit = false;   ///< Given a measurement in the newest frame.
   std::optional<PartialObservation> partial{};
   bool is_partial = false;   ///< Partially observed so lately that its state may be off.
-  bool is_doubtful = false;  ///< ... and not observed whole for long enough since.
+  bool is_doubtful = false;  ///< ... and not observed completely for long enough since.
 };
 
 /// What the sensors know, for the V2V side: all confirmed LOCAL tracks of the newest frame, ordered

@@ -44,7 +44,7 @@ void V2vPerception::OnFix(const GnssFix& fix, const EgoState& ego, Outputs& outp
   const Wgs84 after = alignment_.ToGeodetic(here.vector(), 0.0);
   if ((ToEcef(after).p_E - ToEcef(before).p_E).norm() < kAlignmentStep_m) return;
   // The alignment has moved under all senders at once: what was learnt of them starts again from
-  // the priors, and nobody is blamed.
+  // the priors, and no sender is blamed.
   const PriorityFilterConfig& filter = settings_->priority.filter;
   const Eigen::Matrix2d prior =
       filter.bias_sigma_m * filter.bias_sigma_m * Eigen::Matrix2d::Identity();

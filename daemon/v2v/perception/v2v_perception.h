@@ -43,13 +43,13 @@ namespace v2vouch {
 /// by what the sensors see at its claimed position, by its residuals to the LOCAL track it is taken
 /// for. Penalties and doubts outlive the identity (tombstones).
 ///
-/// While the alignment is suspect nobody is validated or accused; claims are still used, through
+/// While the alignment is suspect no sender is validated or accused; claims are still used, through
 /// the frozen alignment. While all senders are off in the same way (common mode) that shift counts
-/// as our own: nobody is accused, and a sender is judged by what is left of its residual.
+/// as our own: no sender is accused, and each is judged by what is left of its residual.
 ///
 /// State and its owners: TrackSnapshots (what the sensors know), SenderTable (one record per
-/// sender), SenderPairs (who may be whom), PriorityList (the vehicles), HeightJudge,
-/// CommonModeMonitor, Alignment. Judgements are functions of a V2vView of them.
+/// sender), SenderPairs (which sender may be which track), PriorityList (the vehicles),
+/// HeightJudge, CommonModeMonitor, Alignment. Judgements are functions of a V2vView of them.
 ///
 /// Copyable: a copy is a checkpoint. Bounded by max_senders and max_pairs. Events must come in
 /// order of time; the same events give the same bits.

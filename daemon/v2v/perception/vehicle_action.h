@@ -12,7 +12,7 @@ namespace v2vouch {
 struct VehicleAction {
   enum class Kind : std::uint8_t {
     kGoOn,
-    kEnd,    ///< It ends; nobody is blamed.
+    kEnd,    ///< It ends without blame.
     kBlame,  ///< `finding` is held against its sender, which may end it.
   };
   Kind kind = Kind::kGoOn;

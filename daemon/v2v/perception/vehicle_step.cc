@@ -80,9 +80,9 @@ void TakeMeasurements(PriorityVehicle& vehicle, const TrackSnapshot& seen, const
     vehicle.filter.ResetVehicle(track.state_O);
   }
   // Where the reflecting point lies on the vehicle is the sensors' lasting error; LOCAL carries it
-  // with the size, and no claim tells it apart from the sender's bias. While only a part is
-  // observed the filter keeps to what it knew of the whole, or the part would drag it along; the
-  // doubt is still published.
+  // with the size, and no claim can separate it from the sender's bias. During a partial
+  // observation the filter keeps what it knew of the complete vehicle, or the part would drag it
+  // along; the uncertainty is still published.
   const Eigen::Matrix2d P = track.state_O.covariance.topLeftCorner<2, 2>();
   if (!seen.is_partial) vehicle.filter.WidenPosition(P);
   vehicle.lasting = vehicle.filter.LackOf(P);
@@ -94,7 +94,7 @@ void ObserveCarriedPosition(const V2vView& view, PriorityVehicle& vehicle, const
                             const VisibilityMap& map) {
   const Occluder footprint = FootprintOfVehicle(vehicle);
   // Anything there, even a track too young to be confirmed, means that it is not empty; but not a
-  // vehicle in the next lane, nor one that is somebody else's.
+  // vehicle in the next lane, nor one that is another sender's.
   const double slack_m = std::min(2.0 * footprint.position_sigma_m, kMostSlack_m);
   for (const LocalTrack& track : frame.tracks) {
     if (!track.IsHitAt(frame.stamp) || !AreClose(footprint, track, slack_m)) continue;

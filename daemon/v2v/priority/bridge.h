@@ -29,7 +29,7 @@ struct BridgeConfig {
   double max_distance_m = 100.0;   ///< From the ego; farther off the coast itself says too little.
   double part_share = 0.6;         ///< Less of a vehicle visible: measured by a part of it.
   int max_misfits = 3;             ///< Claims in a row that do not fit the bridge end it.
-  double look_s = 0.3;             ///< empty_place: at most one look at a place per this time.
+  double look_s = 0.3;             ///< empty_place: at most one observation per this time.
   double least_detection = 0.5;    ///< empty_place: floor of the detection probability.
   double false_detection = 0.05;   ///< empty_place: chance of a hit where nothing is.
   double clear_doubt = 0.15;      ///< empty_place: chance that what the map calls clear is covered.
@@ -66,7 +66,7 @@ struct BridgeConfig {
 /// T = min(most, base + co-observed), at least `least`.
 double BridgeBudget_s(double co_observed_s, const BridgeConfig& config);
 
-/// A vehicle as it was known when it was last seen, carried on without V2V. Copyable, fixed size.
+/// A vehicle as it was known when it was last seen, predicted without V2V. Copyable, fixed size.
 class Coast {
  public:
   Coast() = default;
@@ -92,16 +92,16 @@ class Coast {
   double speed_sigma_mps_ = 0.0;
 };
 
-/// Negative evidence (empty_place): how often in a row the claimed place was in clear view and
-/// nothing was there. A map that calls a place covered now and clear then knows little of it, so a
-/// look that is not clear starts the run again.
+/// Negative evidence (empty_place): how often in a row the claimed position was in clear view and
+/// nothing was there. A map that alternates between covered and clear knows little of the position,
+/// so an observation that is not clear starts the run again.
 ///
 ///     log ratio = sum of ln [ (1 - (1 - clear_doubt) P_D) / (1 - false_detection) ]
 ///
 /// Copyable, fixed size.
 class EmptyPlace {
  public:
-  /// One look in clear view without a detection; counted at most once per look_s.
+  /// An observation in clear view without a detection; counted at most once per look_s.
   void OnMiss(Timestamp stamp, double detection_probability, const BridgeConfig& config);
   void OnHit() { log_ratio_ = 0.0; }
   void OnCovered() { log_ratio_ = 0.0; }

@@ -13,8 +13,8 @@
 namespace v2vouch {
 
 /// One vehicle of the PRIORITY list: its fused filter, what the sensors last said of it, and what
-/// is left of its bridge. It belongs to the physical vehicle; the sender is whoever speaks for it
-/// now. Copyable, fixed size.
+/// is left of its bridge. It belongs to the physical vehicle; the sender is the identity that
+/// speaks for it now. Copyable, fixed size.
 struct PriorityVehicle {
   std::uint64_t id = 0;        ///< Of PRIORITY; see PriorityId(). 0: it has ended.
   std::uint64_t local_id = 0;  ///< The LOCAL track it rests on; 0 = none.

@@ -17,7 +17,7 @@ namespace v2vouch {
 
 /// Where a vehicle may stand or drive that no sensor sees, just before or behind a LOCAL track.
 struct UnseenNeighbours {
-  std::uint64_t track_id = 0;                               ///< 0: not looked yet.
+  std::uint64_t track_id = 0;                               ///< 0: not searched yet.
   std::array<std::optional<Eigen::Vector2d>, 2> offsets_O;  ///< From the track's centre [m].
 };
 
@@ -34,7 +34,7 @@ struct SenderHeight {
 /// All that is known of one sender near the car: what it said last, the trust in it, and what the
 /// sensors have seen where it says it is. Copyable, fixed size.
 struct SenderRecord {
-  static constexpr double kRecent_s = 0.4;  ///< An older claim says too little of where to look.
+  static constexpr double kRecent_s = 0.4;  ///< An older claim is no use for a visibility query.
 
   SenderId sender = 0;
   CertificateDigest certificate{};
@@ -62,7 +62,7 @@ struct SenderRecord {
   std::uint64_t continues_id = 0;  ///< PRIORITY vehicle that it may continue; 0 = none.
   int continues_claims = 0;        ///< Claims in a row that fit that vehicle.
 
-  /// Whether its last claim tells where to look for it at `now`.
+  /// Whether its last claim is fresh enough to query visibility at its position at `now`.
   [[nodiscard]] bool IsRecent(Timestamp now) const {
     return has_last && std::abs(ToSeconds(now - last.stamp)) <= kRecent_s;
   }

@@ -30,9 +30,9 @@ enum class SenderHolds : std::uint8_t {
 /// The senders near the car, one record each; bounded. Beside them what outlives a record: the
 /// tombstones of penalised senders, and what an earlier run of the program knew.
 ///
-/// Where more senders speak than have room, admission is a token bucket: were every newcomer let
-/// in at once, nobody's second message would find the first one's record, and nobody could be
-/// judged. Evicted are first the penalised (their tombstones remember them), then senders without a
+/// Where more senders speak than have room, admission is a token bucket: if every newcomer were
+/// admitted at once, no sender's second message would find the record of its first, and none could
+/// be judged. Evicted are first the penalised (tombstones keep their state), then senders without a
 /// LOCAL track, then others; among equals the one silent for longest. A sender with a vehicle is
 /// never evicted, so no flood of identities can drive it out.
 ///
@@ -49,7 +49,7 @@ class SenderTable {
     std::optional<SenderId> evicted;  ///< Whose record was given up for it.
   };
   /// A record for a sender that has none. Penalties are inherited from the tombstone of the
-  /// sender, of its certificate or of whom it seems to continue; else from the earlier run.
+  /// sender, of its certificate or of its likely predecessor; else from the earlier run.
   /// @param here its claim.  @param holds what would be lost with another sender's record.
   Admission Admit(const Claim& claim, const ClaimInOdometry& here, const SenderLimits& limits,
                   const TombstoneConfig& tombstones,

@@ -63,7 +63,7 @@ void ResidualHistory::LookForTear(const CoObservation& observation, const TrustC
     is_torn_ = has_any_ && torn_m_ > limit_m;
     unexplained_.setZero();
   }
-  // While but a part is seen the mean rests. A part may mislead by the size of a vehicle, no more.
+  // During a partial observation the mean is kept: the part may be off by up to a vehicle's size.
   if (observation.is_partial && has_any_ && !is_torn_) {
     torn_m_ = (observation.residual_O - mean_).norm();
     is_torn_ = torn_m_ > limit_m + config.torn_m;
@@ -148,8 +148,8 @@ bool IsFarApart(const CoObservation& now, const TrustConfig& config) {
 std::optional<Finding> CheckLevel(const ResidualHistory& history, const CoObservation& now,
                                   const TrustConfig& config) {
   if (!history.is_settled()) return std::nullopt;
-  // What all are off by may be our own fault. Who is not off at all is not to blame for the others:
-  // the shift may be a lie that several tell together.
+  // A shift of all senders may be our own fault. A sender without that shift is not penalised for
+  // it: the shift may be a lie that several senders report together.
   Eigen::Vector2d own_O = history.mean_O();
   if (now.is_ego_shifted && (own_O - now.shift_O).norm() < own_O.norm()) own_O -= now.shift_O;
   return JudgeResidual(

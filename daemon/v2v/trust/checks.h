@@ -32,13 +32,13 @@ struct CoObservation {
   double accel_sigma_mps2 = 0.5;  ///< Of the sensed acceleration.
   double sensed_sigma_m = 0.0;    ///< Of the sensed position, by which the sensors may be wrong.
   double extent_sigma_m = 0.0;    ///< ... and its centre along the track: half of the length's.
-  /// The sensors have but a part of the vehicle, along which they drag their track: no residual to
-  /// judge by, but one that may be torn.
+  /// Partial observation, which may drag the track along: skip the level checks, keep the check for
+  /// a residual jump.
   bool is_partial = false;
-  /// The sensors have not had the whole vehicle for long enough since: what differs blames nobody.
+  /// Complete observations have not lasted long enough since: differences cause no blame.
   bool is_doubtful = false;
   bool is_own_motion_whole = true;  ///< The sender's messages have lately continued each other.
-  bool is_plausible = true;     ///< The pair is: what agrees only by a large bias cleans nobody.
+  bool is_plausible = true;         ///< Of the pair: agreement by a large bias clears no sender.
   bool is_ego_shifted = false;  ///< Common mode: `shift_O` is our own fault, its history unknown.
   Eigen::Vector2d shift_O = Eigen::Vector2d::Zero();
 };
@@ -48,7 +48,7 @@ class ResidualHistory {
  public:
   void Add(const CoObservation& observation, const TrustConfig& config);
 
-  /// Means and reference start again; whether the pair is torn is watched on.
+  /// Means and reference start again; the check for a residual jump goes on.
   void Restart();
 
   [[nodiscard]] bool is_settled() const { return time_s_ >= 1.0; }  ///< One mean time has passed.
@@ -70,8 +70,8 @@ class ResidualHistory {
   [[nodiscard]] double accel_sigma_mps2() const { return accel_sigma_; }
   [[nodiscard]] double time_s() const { return time_s_; }
   [[nodiscard]] Timestamp last() const { return last_; }
-  /// The residual has lately gone where neither motion took it: one of the two has jumped, within a
-  /// second and by more than torn_m (and 0.05 s of speed, and twice the sensors' own sigma).
+  /// Residual jump: within a second the residual changed by more than torn_m (and 0.05 s of speed,
+  /// and twice the sensors' own sigma) beyond what both motions explain.
   [[nodiscard]] bool is_torn() const { return is_torn_; }
   [[nodiscard]] double torn_m() const { return torn_m_; }  ///< By how much.
   /// Two-second mean 10 s ago, or the first two seconds where there are not yet 10.

@@ -15,11 +15,11 @@ namespace v2vouch {
 
 /// empty_place for senders that no sensor vouches for: is there anything where they say they are?
 struct ClaimedPlaceConfig {
-  double look_s = 0.3;               ///< At most one look per this time; looks are not independent.
+  double look_s = 0.3;               ///< At most one observation per this time: not independent.
   double bias_sigma_m = 1.5;         ///< GNSS bias that an honest sender may have, per axis.
   double false_detection = 0.05;     ///< Chance that something is seen where nothing is.
   double clear_doubt = 0.15;         ///< Chance that what is called clear is covered.
-  double recovery_s = 5.0;           ///< Doubt fades with this time constant while nobody can look.
+  double recovery_s = 5.0;           ///< Doubt fades with this time constant while out of view.
   double occupied_s = 0.6;           ///< ... with this one while something is there.
   double slack_m = 1.0;              ///< A track whose box comes so near explains a claim.
   double slack_mps = 3.0;            ///< So may their speeds differ.
@@ -27,7 +27,7 @@ struct ClaimedPlaceConfig {
   double lasting_log_ratio = -3.3;   ///< ... or this for lasting_s: one corner may be hidden.
   double lasting_s = 1.5;
   double accuse_log_ratio = -7.0;  ///< And this must last accuse_hold_s.
-  double max_distance_m = 100.0;   ///< Farther places are not looked at.
+  double max_distance_m = 100.0;   ///< Farther positions are not observed.
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -49,16 +49,16 @@ struct ClaimedPlaceConfig {
 
 /// Whether a vehicle can be where a sender claims, though the sensors see none there. The claim has
 /// an unknown bias b of a few metres, so the vehicle may be at any of nine places: the claimed one
-/// and sqrt(3) sigma off along and across it (Gauss-Hermite points, weights w_i). Each look tells
-/// of each place how likely the sensors would have shown a vehicle that stands there,
+/// and sqrt(3) sigma off along and across it (Gauss-Hermite points, weights w_i). Each observation
+/// says for each position how likely the sensors would have shown a vehicle there,
 ///
 ///     l_i <- l_i (1 - (1 - clear_doubt) P_i) / (1 - false_detection),  l_i in [1e-5, 1]
 ///     log ratio = ln sum_i w_i l_i
 ///
 /// P_i = 0 where the place is covered, out of view or not known to be clear: then l_i goes back to
 /// 1 with the time constant recovery_s; with occupied_s where something is that may be the vehicle
-/// (which may just drive past). So the ratio never falls below the weight of what cannot be seen,
-/// however long one looks: who may be hidden loses nothing.
+/// (which may just drive past). So the ratio never falls below the weight of the positions that
+/// cannot be seen, however long it is observed: a sender that may be hidden loses nothing.
 ///
 /// Copyable, fixed size.
 class ClaimedPlace {
@@ -79,7 +79,7 @@ class ClaimedPlace {
     double detection = 0.0;  ///< P_i, where kEmpty.
   };
 
-  /// Whether it is time to look again.
+  /// Whether the next observation is due.
   [[nodiscard]] bool IsDue(Timestamp stamp, const ClaimedPlaceConfig& config) const;
   void OnLook(Timestamp stamp, std::span<const Look, kPlaces> looks,
               const ClaimedPlaceConfig& config);
@@ -89,11 +89,11 @@ class ClaimedPlace {
     accusable_since_.reset();
     doubted_since_.reset();
   }
-  /// Something is held against it that another identity should not wash off.
+  /// There is doubt that a change of identity must not clear.
   [[nodiscard]] bool has_doubt() const { return log_ratio() < -0.5; }
 
   [[nodiscard]] double log_ratio() const;
-  /// At the last look. It accuses where the ratio has been low enough for `hold_s`.
+  /// At the last observation. It accuses where the ratio has been low enough for `hold_s`.
   [[nodiscard]] std::optional<Finding> Judge(double hold_s, const ClaimedPlaceConfig& config) const;
 
  private:

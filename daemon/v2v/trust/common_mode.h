@@ -46,8 +46,8 @@ class CommonMode {
   /// At least `senders` of them, and more than half of all, are shifted together.
   [[nodiscard]] bool is_shifted() const { return is_shifted_; }
   [[nodiscard]] const Eigen::Vector2d& shift_O() const { return shift_; }
-  /// Whether somebody other than `sender` vouches for the ego's place. Without such a witness a
-  /// position residual withdraws, but accuses nobody.
+  /// Whether another sender than `sender` confirms the ego's position. Without such a witness a
+  /// position residual withdraws, but never accuses.
   [[nodiscard]] bool HasWitnessAgainst(SenderId sender) const;
 
  private:

@@ -78,7 +78,7 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
     if (observation.is_plausible) clean_s_ += std::clamp(dt_s, 0.0, kMostCredit_s);
     return true;
   }
-  // The sensors broke off or strayed, not the sender.
+  // The track jumped or strayed, the sender did not.
   const bool is_track_in_doubt =
       observation.is_doubtful || track_motion_.HasBroken(observation.stamp);
   if (observation.is_own_motion_whole && is_track_in_doubt) {

@@ -11,7 +11,7 @@
 
 namespace v2vouch {
 
-/// What is left of a penalty, for whoever goes on in a penalised sender's place.
+/// What is left of a penalty, for the successor of a penalised sender.
 struct Penalty {
   TrustState state = TrustState::kNone;  ///< SUSPECT or REVOKED; kNone: no penalty.
   int suspicions = 0;
@@ -33,7 +33,7 @@ struct ValidationEvidence {
   double min_margin = 4.0;
   bool is_assigned = false;          ///< Chosen one-to-one.
   bool are_sensors_sure = false;     ///< Radar and camera, or one of them long enough.
-  bool is_ego_gnss_suspect = false;  ///< Our own place is in doubt: nobody is validated.
+  bool is_ego_gnss_suspect = false;  ///< The ego's position is in doubt: no validation.
 };
 
 /// Trust in one sender. Pure: evidence in, state and verdicts out.
@@ -42,9 +42,9 @@ struct ValidationEvidence {
 ///     any -> SUSPECT (withdrawn) -> agreeing with the sensors for clean_s, doubling -> CANDIDATE
 ///     any -> REVOKED (accused, from hard evidence that lasts) -> revoked_s, doubling -> UNKNOWN
 ///
-/// Silence and hiding clean nobody: only time in which the sensors see a vehicle where the sender
-/// says it is counts. A stranger whose claims do not fit the LOCAL track it is taken for is not
-/// suspected for that (the track may be another's), it just starts from zero.
+/// Silence and hiding clear no sender: only time in which the sensors see a vehicle at the claimed
+/// position counts. A sender not yet validated whose claims do not fit the LOCAL track it is paired
+/// with is not suspected for that (the track may be another's), it starts from zero.
 ///
 /// Copyable, fixed size.
 class SenderTrust {
@@ -53,7 +53,7 @@ class SenderTrust {
   [[nodiscard]] bool is_relied_on() const {
     return state_ == TrustState::kValidated || state_ == TrustState::kBridged;
   }
-  /// Whether forgetting this sender now would wash something off.
+  /// Whether forgetting this sender now would clear a penalty.
   [[nodiscard]] bool has_penalty() const {
     return state_ == TrustState::kSuspect || state_ == TrustState::kRevoked;
   }
@@ -62,12 +62,11 @@ class SenderTrust {
   /// A message, and whether it continues the sender's own motion.
   void OnMessage(Timestamp stamp, bool is_consistent, const TrustConfig& config);
 
-  /// A claim beside its LOCAL track. Acts on the gravest finding; TakeVerdict() tells.
-  /// A sender whose own messages broke off when the two were torn apart is withdrawn at once.
-  /// @return false where they were torn apart while the sender's messages continue each other: the
-  /// LOCAL track has jumped to something else, has lately changed its velocity as no vehicle can,
-  /// or has had but a part of the vehicle. Then nobody is to blame and the sender starts from zero;
-  /// Release() has been called.
+  /// A claim beside its LOCAL track. Acts on the gravest finding; TakeVerdict() returns it.
+  /// A residual jump together with a break in the sender's own messages withdraws it at once.
+  /// @return false for a residual jump while the messages continue each other: the track has
+  /// switched to something else, has lately exceeded kinematic limits, or is of partial
+  /// observations. No sender is blamed, this one starts from zero; Release() has been called.
   bool OnCoObservation(const CoObservation& observation, bool may_accuse,
                        const TrustConfig& config);
 
@@ -86,7 +85,7 @@ class SenderTrust {
   void InheritFrom(const SenderTrust& old) { *this = old; }
   [[nodiscard]] Penalty penalty() const;
   void Inherit(const Penalty& penalty);
-  /// Until when it was relied on, where it has not been blamed since.
+  /// Until when it was validated, where it has not been blamed since.
   [[nodiscard]] std::optional<Timestamp> released() const { return released_; }
   void InheritRelease(Timestamp until) { released_ = until; }
 

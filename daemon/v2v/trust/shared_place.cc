@@ -6,7 +6,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kLongestStep_s = 0.2;  // A pause between looks counts for no more.
+constexpr double kLongestStep_s = 0.2;  // A pause between observations counts for no more.
 constexpr double kMost_s = 10.0;        // So that it is forgotten in finite time.
 
 }  // namespace

@@ -26,14 +26,14 @@ struct SharedPlaceConfig {
 };
 
 /// How long a sender's claims have been those of another sender, too, while the sensors see one
-/// vehicle there: seconds shared less seconds apart, never below 0. Which of them is the vehicle's
-/// own is not known, so none is believed; only who was relied on before is not asked. WITHDRAW
+/// vehicle there: seconds shared less seconds apart, never below 0. Which of them belongs to the
+/// vehicle is unknown, so none is believed; only a sender validated before is exempt. WITHDRAW
 /// alone: two receivers with like errors may carry two honest cars to one place while one of them
 /// is hidden. Copyable, fixed size.
 class SharedPlace {
  public:
   void OnLook(Timestamp stamp, bool is_shared);
-  /// Long enough that nobody new is to be believed there.
+  /// Long enough that no further sender is validated there.
   [[nodiscard]] bool is_contested() const { return shared_s_ >= kContested_s; }
   [[nodiscard]] std::optional<Finding> Judge(const SharedPlaceConfig& config) const;
 

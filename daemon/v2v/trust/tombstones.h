@@ -15,12 +15,12 @@
 
 namespace v2vouch {
 
-/// Where penalised and doubted senders were last heard, so that no new identity washes it off.
-/// Keyed by certificate where there is one, and by place and motion: a sender that was never heard
-/// before the old one fell silent, and goes on where its claims would be now, is the old one again.
-/// A car that was heard beside the liar is not.
+/// Where penalised and doubted senders were last heard, so that no new identity clears a penalty.
+/// Keyed by certificate where there is one, and by position and motion: a sender that was never
+/// heard before the old one fell silent, and continues where its claims would be now, is its
+/// successor. A car that was heard beside the liar is not.
 ///
-/// Fixed size: the oldest stone gives way. Copyable.
+/// Fixed size: the oldest tombstone is replaced. Copyable.
 class Tombstones {
  public:
   struct Stone {
@@ -33,7 +33,7 @@ class Tombstones {
     ClaimedPlace place;  ///< Doubt that has not led to a penalty yet.
   };
 
-  /// A penalised sender has spoken (or was just penalised): sets or moves its stone.
+  /// A penalised sender has spoken (or was just penalised): sets or moves its tombstone.
   void Set(const Stone& stone);
   /// No longer penalised or doubted.
   void Remove(SenderId sender);
@@ -41,7 +41,7 @@ class Tombstones {
 
   [[nodiscard]] std::span<const Stone> stones() const { return {stones_.data(), count_}; }
 
-  /// The stone a newcomer inherits, which is taken away; nullopt: none.
+  /// The tombstone a successor inherits, which is then removed; nullopt: none.
   /// @param first_heard when the newcomer was heard for the first time ever.
   std::optional<Stone> TakeFor(SenderId sender, const CertificateDigest& certificate,
                                Timestamp first_heard, Timestamp now, const Eigen::Vector2d& p_O,

@@ -10,20 +10,20 @@
 
 namespace v2vouch {
 
-/// Whether a LOCAL track moves as a vehicle can. One that goes over to another car, or whose
+/// Whether a LOCAL track keeps kinematic limits. A track that switches to another car, or whose
 /// reflection runs along a vehicle's side, changes its velocity faster than tyres allow:
 ///
 ///     |v(t) - v(t - dt)| > 8 m/s^2 dt + 1.5 m/s      for some dt up to 0.6 s
 ///
-/// and what comes between it and its sender then is the sensors' doing. How unsure the track is of
-/// itself does not matter. Copyable, fixed size.
+/// and a residual to its sender is then caused by the sensors. The track's own sigma does not
+/// matter. Copyable, fixed size.
 class TrackMotion {
  public:
   /// A velocity of the track [m/s, axes of O], in order of time; earlier ones are ignored.
-  /// @return whether it broke off just now.
+  /// @return whether it exceeded them just now.
   bool Observe(Timestamp stamp, const Eigen::Vector2d& velocity_O);
 
-  /// It has broken off within the last 3 s: nobody is to blame for what differs.
+  /// The limits were exceeded within the last 3 s: residuals cause no blame.
   [[nodiscard]] bool HasBroken(Timestamp now) const;
 
  private:

@@ -16,7 +16,7 @@ struct TrustConfig {
   int candidate_messages = 3;     ///< Consistent messages that make a CANDIDATE.
   int co_observations = 10;       ///< Claims seen together with the sensors before VALIDATED ...
   double co_observed_s = 1.5;     ///< ... and over this long.
-  int slow_observations = 4;      ///< So many suffice, from whoever speaks at 1 Hz ...
+  int slow_observations = 4;      ///< So many suffice for a sender at 1 Hz ...
   double slow_observed_s = 2.8;   ///< ... over this long.
   int again_observations = 5;     ///< Relied on in the last again_s and not blamed: so many ...
   double again_observed_s = 0.6;  ///< ... over so long suffice.
@@ -30,7 +30,7 @@ struct TrustConfig {
   double stale_position_s = 0.15;
   double speed_withdraw_mps = 1.0;  ///< velocity_residual: claimed against sensed velocity.
   double speed_accuse_mps = 2.0;
-  double torn_m = 2.5;  ///< A residual that jumps by so much was torn by one of the two sides.
+  double torn_m = 2.5;  ///< residual_jump: a change by so much at once is a break of either side.
   /// velocity_residual: only once the position has come so far from where it was.
   double leaving_m = 1.5;
   /// heading_residual, above heading_min_speed_mps.
@@ -41,8 +41,8 @@ struct TrustConfig {
   double accel_withdraw_mps2 = 3.0;
   /// plausible size: claimed size off by this share of the sensed one.
   double size_mismatch = 0.6;
-  double odd_claim_m = 6.0;  ///< A claim so far from its sender's others may be somebody else's ...
-  int odd_claims = 5;        ///< ... but not so many in a row.
+  double odd_claim_m = 6.0;    ///< A claim so far from the others may be of another device ...
+  int odd_claims = 5;          ///< ... but not so many in a row.
   double accuse_hold_s = 5.0;  ///< An accusing level must last this long.
   double suspect_s = 2.0;      ///< Least stay in SUSPECT.
   double clean_s = 15.0;       ///< Agreeing with the sensors before CANDIDATE; doubles each time.

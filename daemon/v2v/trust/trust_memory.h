@@ -17,7 +17,7 @@ namespace v2vouch {
 struct TrustMemory {
   SenderId sender = 0;
   CertificateDigest certificate{};  ///< All zero: none.
-  /// SUSPECT, REVOKED: the penalty goes on. CANDIDATE: relied on until `since_s` ago without blame;
+  /// SUSPECT, REVOKED: the penalty goes on. CANDIDATE: validated until `since_s` ago, no blame;
   /// it is validated again by the sensors, sooner than a stranger. Never VALIDATED itself.
   TrustState state = TrustState::kNone;
   int suspicions = 0;
@@ -32,7 +32,7 @@ inline constexpr std::size_t kMostTrustMemories = 512;
 /// The kept ones of `all`, ordered by sender; of a sender that comes twice the graver.
 std::vector<TrustMemory> BoundedTrust(std::vector<TrustMemory> all);
 
-/// What a fresh start was told, until each sender is heard again. Copyable; a function of the
+/// What the trust file held at start, until each sender is heard again. Copyable; a function of the
 /// events in order of time.
 class RestoredTrust {
  public:

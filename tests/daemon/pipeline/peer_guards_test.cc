@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input guards that another open tracker lacks (docs/tracking_peers.md): it accepts stamps two
+// Input guards that another open tracker lacks (docs/results/peers.md): it accepts stamps two
 // seconds ahead and runs backwards, it knows no age limit, and what is not a number becomes one.
 #include <gtest/gtest.h>
 

@@ -22,10 +22,10 @@ TEST(Notice, EachHasANameOfItsOwnAndAdvice) {
 }
 
 TEST(Notice, EachStandsInTheListOfTheDocumentation) {
-  std::ifstream file(V2VOUCH_SOURCE_DIR "/docs/running.md");
+  std::ifstream file(V2VOUCH_SOURCE_DIR "/docs/reference/notices.md");
   ASSERT_TRUE(file);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const auto list = text.find("## Notices");
+  const auto list = text.find("# Notices");
   ASSERT_NE(list, std::string::npos);
   for (std::size_t i = 0; i < kNoticeKindCount; ++i) {
     const std::string name(NoticeName(static_cast<NoticeKind>(i)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four defects measured in another open tracker (docs/tracking_peers.md), each as a test that ours
+// Four defects measured in another open tracker (docs/results/peers.md), each as a test that ours
 // does not have it.
 #include <gtest/gtest.h>
 

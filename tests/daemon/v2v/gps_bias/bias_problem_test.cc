@@ -88,7 +88,8 @@ TEST(SolveBias, TheSplitOfCommonAndOwnStaysUncertainHoweverLongOneLooks) {
   const GpsBiasConfig config;
   const Truth truth = Draw(3, 8, config);
   const BiasSolution solution = SolveBias(truth.senders, kEnd, config);
-  // sigma_e^2 sigma_g^2 / (sigma_g^2 + M sigma_e^2), notes on identifiability; wandering beside.
+  // The common part is known no better than sigma_e^2 sigma_g^2 / (sigma_g^2 + M sigma_e^2): only
+  // the difference of ego and senders is observed. The wandering part comes on top.
   const double least = 1.5 * 1.5 / 9.0;
   EXPECT_GT(solution.common.covariance(0, 0), least);
   EXPECT_LT(solution.common.covariance(0, 0), 1.3 * least);
