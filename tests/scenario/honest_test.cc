@@ -43,8 +43,8 @@ TEST(NobodyLies, ACarThatSpedUpBehindALorryComesBackAsTheSameVehicle) {
   for (const auto& [sender, ids] : outcome.priority_ids) EXPECT_EQ(ids.size(), 1u) << sender;
 }
 
-// A claim that drifts aside soon lies behind something else. Only a vehicle that the sensors measure
-// where its sender has it is excused for the part of it that is hidden there.
+// A claim that drifts aside soon lies behind something else. Only a vehicle that the sensors
+// measure where its sender has it is excused for the part of it that is hidden there.
 TEST(SomebodyLies, AClaimThatDriftsBehindSomethingElseIsFoundOut) {
   const Recording recording = RecordWith("campaign_highway", 964, "A07_lateral_0.5mps", 20);
   ASSERT_FALSE(recording.empty());

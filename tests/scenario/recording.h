@@ -17,8 +17,8 @@ using Recording = std::vector<sim::SimEvent>;
 
 /// A shipped scenario as it arrives at the car; empty and a test failure when it cannot be run.
 Recording Record(const std::string& scenario, std::uint64_t seed);
-/// With a shipped overlay laid over it (a file of sim/attacks/catalogue, without ending) and so many
-/// vehicles of traffic.
+/// With a shipped overlay laid over it (a file of sim/attacks/catalogue, without ending) and so
+/// many vehicles of traffic.
 Recording RecordWith(const std::string& scenario, std::uint64_t seed, const std::string& overlay,
                      int vehicles);
 
