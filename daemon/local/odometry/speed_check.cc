@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "daemon/common/data/kinematic_limits.h"
+
 namespace v2vouch {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr double kLongestStep_s = 0.5;
 // Two speeds differ if by more than this; radars and wheels disagree by 1 to 2 % as it is.
 constexpr double kDiffer_mps = 0.4;
 constexpr double kDifferShare = 0.02;
-constexpr double kLeastSpeed_mps = -70.0;
+constexpr double kLeastSpeed_mps = -kMostRoadSpeed_mps;
 constexpr double kMostSpeed_mps = 90.0;
 // A world: over half a second of three radars, three cells a scan, and some on either side.
 constexpr double kWorldCells = 24.0;

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <tuple>
 
+#include "daemon/common/data/kinematic_limits.h"
+
 namespace v2vouch {
 namespace {
 
 constexpr double kAcrossPrior_mps = 10.0;
-constexpr double kMostSpeed_mps = 70.0;
+constexpr double kMostSpeed_mps = kMostRoadSpeed_mps;
 // Pairs of reflections that are looked at. Traffic has some thousand; interference all round has a
 // hundred times as many and is no vehicle in pieces.
 constexpr std::size_t kMostPairs = 8192;

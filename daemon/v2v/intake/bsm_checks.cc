@@ -7,16 +7,14 @@
 #include <utility>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/data/kinematic_limits.h"
 
 namespace v2vouch {
 namespace {
 
 // What no road vehicle does (check implausible).
-constexpr double kMaxSpeed_mps = 70.0;
-constexpr double kMaxAccel_mps2 = 12.0;
-constexpr double kMaxLateralAccel_mps2 = 9.0;
 constexpr double kMaxYawRate_radps = 1.5;
-constexpr double kMaxTurning_mps2 = 12.0;
+constexpr double kMaxTurning_mps2 = kMostRoadAccel_mps2;  // Speed x yaw rate.
 constexpr double kEchoSpeed_mps = 1.0;
 constexpr double kEchoCourse_rad = FromDegrees(15.0);
 constexpr double kEchoCourseSpeed_mps = 2.0;  // Below, courses say little.
@@ -50,11 +48,12 @@ std::optional<Refusal> ContentProblem(const Bsm& bsm) {
   }
   if (std::abs(*bsm.latitude_rad) > kPi / 2.0) return refuse(Reason::kBsmRange, "lat");
   if (std::abs(*bsm.longitude_rad) > 2.0 * kPi) return refuse(Reason::kBsmRange, "long_");
-  if (std::abs(*bsm.speed_mps) > kMaxSpeed_mps) return refuse(Reason::kBsmImplausible, "speed");
-  if (std::abs(bsm.accel_long_mps2.value_or(0.0)) > kMaxAccel_mps2) {
+  if (std::abs(*bsm.speed_mps) > kMostRoadSpeed_mps)
+    return refuse(Reason::kBsmImplausible, "speed");
+  if (std::abs(bsm.accel_long_mps2.value_or(0.0)) > kMostRoadAccel_mps2) {
     return refuse(Reason::kBsmImplausible, "accelSet_long");
   }
-  if (std::abs(bsm.accel_lat_mps2.value_or(0.0)) > kMaxLateralAccel_mps2) {
+  if (std::abs(bsm.accel_lat_mps2.value_or(0.0)) > kMostLateralAccel_mps2) {
     return refuse(Reason::kBsmImplausible, "accelSet_lat");
   }
   return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/base/visit.h"
+#include "daemon/common/data/kinematic_limits.h"
 
 namespace v2vouch {
 
@@ -15,7 +16,7 @@ struct MessageCheckConfig {
   double own_motion_nis = 12.0;  ///< own_motion: mean NIS of ten messages (4 where consistent).
   double jump_m = 8.0;  ///< position_jump: displacement that the claimed motion does not explain.
   /// position_jump: and never more than this times the time between.
-  double jump_speed_mps = 70.0;
+  double jump_speed_mps = kMostRoadSpeed_mps;
   int accuse_jumps = 3;  ///< position_jump: of five messages.
   /// speed_against_path: claimed speed against the way made good: this ...
   double path_speed_mps = 0.8;
@@ -26,10 +27,10 @@ struct MessageCheckConfig {
   double path_min_m = 10.0;         ///< both: shorter ways are not judged.
   double path_noise_sigmas = 3.0;   ///< both: by how much noise may exceed the limits.
   double accuse_hold_s = 5.0;       ///< both: twice a limit for so long accuses.
-  double max_accel_mps2 = 12.0;     ///< implausible_motion: change of claimed speed.
-  double size_change_m = 0.3;       ///< size_change: within one identity ...
-  double size_change_share = 0.1;   ///< ... or this share of the size, whichever is less.
-  int implausible_messages = 3;     ///< implausible: refused as impossible, of ten.
+  double max_accel_mps2 = kMostRoadAccel_mps2;  ///< implausible_motion: change of claimed speed.
+  double size_change_m = 0.3;                   ///< size_change: within one identity ...
+  double size_change_share = 0.1;  ///< ... or this share of the size, whichever is less.
+  int implausible_messages = 3;    ///< implausible: refused as impossible, of ten.
 
   template <class Archive>
   void Visit(Archive& a) {
