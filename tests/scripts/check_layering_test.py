@@ -80,6 +80,20 @@ class CheckLayering(unittest.TestCase):
             with self.assertRaises(check_layering.TableError, msg=table):
                 check_layering.read_table(table)
 
+    def test_a_wall_keeps_what_is_behind_it_apart(self):
+        rooms = "daemon/local/track : daemon/common/base\ndaemon/common/base :\ndaemon/v2v/trust :\n"
+        wall = "wall daemon/local : daemon/common\n"
+        check_layering.read_table(wall + rooms)
+        through = rooms.replace("daemon/common/base\n", "daemon/common/base daemon/v2v/trust\n", 1)
+        with self.assertRaisesRegex(check_layering.TableError, "daemon/local/track reaches daemon/v2v"):
+            check_layering.read_table(wall + through)
+        with self.assertRaisesRegex(check_layering.TableError, "no such folder"):
+            check_layering.read_table("wall daemon/nowhere : daemon/common\n" + rooms)
+
+    def test_top_level_folders_form_no_circle(self):
+        with self.assertRaisesRegex(check_layering.TableError, "circle"):
+            check_layering.read_table("daemon/a : sim/b\nsim/b :\nsim/c : daemon/d\ndaemon/d :\n")
+
 
 if __name__ == "__main__":
     unittest.main()
