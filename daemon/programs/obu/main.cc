@@ -3,6 +3,8 @@
 #include <iostream>
 
 #include "daemon/programs/obu/decode.h"
+#include "daemon/programs/obu/live.h"
+#include "daemon/rim/config/yaml_reader.h"
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/std_streams.h"
 #include "daemon/rim/program/command_line.h"
@@ -11,6 +13,10 @@ namespace {
 
 constexpr char kExamples[] = R"(
 Examples:
+  v2vouch-obu --port 5398 -l 'udpm://239.255.76.68:7668?ttl=0'
+      the unit forwards to UDP 5398 of this computer: publishes BSM and, once a second, OBU_STATUS
+  v2vouch-obu --config obu.yaml
+      several ports, allowed addresses, trusted certificates (docs/how-to/connect-an-on-board-unit.md)
   v2vouch-obu --decode drive.pcap
       what is in a capture: layer by layer, field by field with units, and why what was refused was
   v2vouch-obu --decode messages.hex --json | head -1
@@ -20,10 +26,11 @@ Examples:
 
 Captures are pcap or pcapng files of Ethernet, 802.11, radiotap, Linux "any" or raw IP. A .hex file
 holds one datagram a line; blanks round it, empty lines and comments (#) are passed over. Any other
-file is one raw datagram. docs/obu.md lists the framings.
+file is one raw datagram. docs/how-to/connect-an-on-board-unit.md lists the framings.
 
 Exit codes: 0 good, refused messages included; 1 the file cannot be read to its end, or holds no
-packet; 2 usage or configuration (certificates that cannot be used included).)";
+packet, or a socket cannot be opened; 2 usage or configuration (certificates that cannot be used
+included).)";
 
 const std::vector<std::string> kFramings = {"auto",  "frame",    "dot2",     "wsmp", "cv2x",
                                             "c2p",   "ethernet", "radiotap", "wlan", "llc",
@@ -34,8 +41,9 @@ const std::vector<std::string> kFramings = {"auto",  "frame",    "dot2",     "ws
 int main(int argc, char** argv) {
   v2vouch::GuardStandardStreams("v2vouch-obu");
   v2vouch::obu::DecodeOptions options;
-  std::string framing = "auto", roots, issuers, lcm_url;
-  CLI::App app("Takes V2X messages of on-board units apart and prints what is in a capture.");
+  std::string framing = "auto", roots, issuers, lcm_url, config_path;
+  int port = 0;
+  CLI::App app("Hands what on-board units receive to the daemon; prints what is in a capture.");
   app.footer(kExamples);
   app.add_option("--decode", options.path, "Capture (pcap, pcapng), hex text or raw datagram");
   app.add_flag("--json", options.as_json, "One JSON object a line");
@@ -43,17 +51,34 @@ int main(int argc, char** argv) {
   app.add_option("--framing", framing, "Take datagrams for this, whatever they look like")
       ->check(v2vouch::OneOf(kFramings))
       ->capture_default_str();
+  app.add_option("--config", config_path, "Ports, addresses and certificates of the gateway");
+  app.add_option("--port", port, "Listen on this UDP port (default: 5398)")
+      ->check(CLI::Range(1, 65535));
   app.add_option("--roots", roots, "Folder of certificates that are trusted");
   app.add_option("--issuers", issuers, "Folder of certificates that the trusted ones vouch for");
-  app.add_option("-l,--lcm-url", lcm_url, "Taken like every program's; --decode opens no socket")
+  app.add_option("-l,--lcm-url", lcm_url,
+                 "Where BSM and OBU_STATUS are published; --decode opens no socket")
       ->check(v2vouch::CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-obu", argc, argv)) return *code;
-  if (options.path.empty()) {
-    std::cerr << "v2vouch-obu: wants --decode FILE; see --help\n";
-    return v2vouch::kExitUsage;
-  }
   options.framing = v2vouch::obu::LayerOfName(framing);
+
+  v2vouch::obu::GatewayConfig config;
+  std::vector<std::string> problems;
+  if (!config_path.empty()) v2vouch::config::Load(config_path, config, problems);
+  v2vouch::obu::InputConfig one;
+  if (!config.inputs.empty()) one = config.inputs.front();
+  if (port != 0) one.port = port;
+  if (framing != "auto") one.framing = framing;
+  if (port != 0 || framing != "auto") config.inputs = {one};
+  if (!lcm_url.empty()) config.lcm_url = lcm_url;
+  if (!roots.empty()) config.security.roots = roots;
+  if (!issuers.empty()) config.security.issuers = issuers;
+  v2vouch::obu::CheckGatewayConfig(config, problems);
+  for (const std::string& problem : problems) std::cerr << "v2vouch-obu: " << problem << '\n';
   v2vouch::obu::TrustAnchors anchors;
-  if (!v2vouch::obu::LoadAnchors(roots, issuers, anchors)) return v2vouch::kExitUsage;
-  return v2vouch::obu::Decode(options, std::move(anchors));
+  const bool has_anchors =
+      v2vouch::obu::LoadAnchors(config.security.roots, config.security.issuers, anchors);
+  if (!has_anchors || !problems.empty()) return v2vouch::kExitUsage;
+  if (!options.path.empty()) return v2vouch::obu::Decode(options, std::move(anchors));
+  return v2vouch::obu::RunGateway(config, std::move(anchors));
 }

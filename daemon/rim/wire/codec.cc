@@ -14,6 +14,7 @@
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
+#include "v2vouch/obu_status_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/text_t.hpp"
 #include "v2vouch/track_list_t.hpp"
@@ -103,6 +104,7 @@ V2VOUCH_CODEC(ego_motion_t)
 V2VOUCH_CODEC(gnss_fix_t)
 V2VOUCH_CODEC(misbehavior_report_t)
 V2VOUCH_CODEC(radar_scan_t)
+V2VOUCH_CODEC(obu_status_t)
 V2VOUCH_CODEC(text_t)
 V2VOUCH_CODEC(track_list_t)
 V2VOUCH_CODEC(truth_bsm_t)

@@ -20,6 +20,7 @@
 #include "v2vouch/misbehavior_report_t.hpp"
 #include "v2vouch/mount_status_t.hpp"
 #include "v2vouch/notice_t.hpp"
+#include "v2vouch/obu_status_t.hpp"
 #include "v2vouch/radar_detection_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/refusal_t.hpp"
@@ -199,6 +200,33 @@ constexpr Field kNoticeFields[] = {
     {.name = "advice", .kind = Kind::kString, .max_length = kMaxNameBytes},
 };
 constexpr Layout kNotice = MakeLayout("notice_t", kNoticeFields);
+
+constexpr Field kObuStatusFields[] = {
+    {.name = "utime", .kind = Kind::kInt64},
+    {.name = "seq", .kind = Kind::kInt64},
+    {.name = "version", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "datagrams", .kind = Kind::kInt64},
+    {.name = "published", .kind = Kind::kInt64},
+    {.name = "publish_failures", .kind = Kind::kInt64},
+    {.name = "duplicates", .kind = Kind::kInt64},
+    {.name = "kernel_drops", .kind = Kind::kInt64},
+    {.name = "receive_buffer_bytes", .kind = Kind::kInt64},
+    {.name = "senders", .kind = Kind::kInt32},
+    {.name = "certificates", .kind = Kind::kInt32},
+    {.name = "silent_s", .kind = Kind::kDouble},
+    {.name = "obu_silent", .kind = Kind::kInt8},
+    {.name = "clock_offset_s", .kind = Kind::kDouble},
+    {.name = "clock_suspect", .kind = Kind::kInt8},
+    {.name = "num_framings", .kind = Kind::kInt32},
+    {.name = "framings", .kind = Kind::kStruct, .type = &kCount, .max_count = 64},
+    {.name = "num_refusals", .kind = Kind::kInt32},
+    {.name = "refusals", .kind = Kind::kStruct, .type = &kCount, .max_count = 64},
+    {.name = "num_signatures", .kind = Kind::kInt32},
+    {.name = "signatures", .kind = Kind::kStruct, .type = &kCount, .max_count = 64},
+    {.name = "num_sources", .kind = Kind::kInt32},
+    {.name = "sources", .kind = Kind::kStruct, .type = &kCount, .max_count = 128},
+};
+constexpr Layout kObuStatus = MakeLayout("obu_status_t", kObuStatusFields, 256 * 1024);
 
 constexpr Field kRefusalFields[] = {
     {.name = "channel", .kind = Kind::kString, .max_length = kMaxNameBytes},
@@ -481,6 +509,7 @@ V2VOUCH_LAYOUT(evidence_t, kEvidence)
 V2VOUCH_LAYOUT(gnss_fix_t, kGnssFix)
 V2VOUCH_LAYOUT(mount_status_t, kMountStatus)
 V2VOUCH_LAYOUT(notice_t, kNotice)
+V2VOUCH_LAYOUT(obu_status_t, kObuStatus)
 V2VOUCH_LAYOUT(misbehavior_report_t, kMisbehaviorReport)
 V2VOUCH_LAYOUT(radar_detection_t, kRadarDetection)
 V2VOUCH_LAYOUT(radar_scan_t, kRadarScan)

@@ -48,8 +48,13 @@ void ExpectCore(const json& bsm, const obu::BsmCore& core, const std::string& wh
 }
 
 TEST(V2vouchObu, UsageIsToldWithExitCode2) {
-  EXPECT_EQ(Obu("").code, 2);
-  EXPECT_THAT(Obu("").output, HasSubstr("--decode"));
+  EXPECT_EQ(Obu("--port 70000").code, 2);
+  const Finished config =
+      Obu("--config " + Written("bad.yaml", "inputs: [{port: 0, framing: x}]\nchannel: BSM\n"));
+  EXPECT_EQ(config.code, 2);
+  EXPECT_THAT(config.output, HasSubstr("inputs[0].port = 0: must be at least 1"));
+  EXPECT_THAT(config.output, HasSubstr("framing = x: is no framing"));
+  EXPECT_THAT(config.output, HasSubstr("channel"));
   EXPECT_EQ(Obu("--decode x --framing wsmpp").code, 2);
   EXPECT_THAT(Obu("--decode x --framing wsmpp").output, HasSubstr("did you mean wsmp?"));
   EXPECT_EQ(Obu("--decode /dev/null --roots /nowhere").code, 2);
