@@ -26,43 +26,58 @@ struct Look {
   bool by_any = false;
 };
 
+// The ego's sensors, one of each as the vehicle file has them.
+class Sensors {
+ public:
+  Sensors(const World& world, std::uint64_t seed) {
+    const VehicleConfig& vehicle = world.vehicle();
+    for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
+      radars_.emplace_back(world, static_cast<int>(i), seed);
+    }
+    for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
+      cameras_.emplace_back(world, static_cast<int>(i), seed);
+    }
+  }
+
+  // What each actor of the snapshot is likely to be seen by.
+  void Look(const Snapshot& snapshot, double likely, std::vector<struct Look>& looks) {
+    looks.assign(snapshot.actors.size(), {});
+    for (RadarSimulator& radar : radars_) {
+      radar.Look(snapshot, sights_);
+      for (std::size_t i = 0; i < looks.size(); ++i) {
+        looks[i].by_radar = looks[i].by_radar || sights_[i].detection_probability >= likely;
+        looks[i].by_any = looks[i].by_any || sights_[i].detection_probability > 0.0;
+      }
+    }
+    for (CameraSimulator& camera : cameras_) {
+      camera.Look(snapshot, sights_);
+      for (std::size_t i = 0; i < looks.size(); ++i) {
+        looks[i].by_camera = looks[i].by_camera || sights_[i].detection_probability >= likely;
+        looks[i].by_any = looks[i].by_any || sights_[i].detection_probability > 0.0;
+      }
+    }
+  }
+
+ private:
+  std::vector<RadarSimulator> radars_;
+  std::vector<CameraSimulator> cameras_;
+  std::vector<Sight> sights_;
+};
+
 }  // namespace
 
 ViewTimeline::ViewTimeline(const World& world, std::uint64_t seed) {
-  const VehicleConfig& vehicle = world.vehicle();
-  std::vector<RadarSimulator> radars;
-  std::vector<CameraSimulator> cameras;
-  for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
-    radars.emplace_back(world, static_cast<int>(i), seed);
-  }
-  for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
-    cameras.emplace_back(world, static_cast<int>(i), seed);
-  }
+  Sensors sensors(world, seed);
   const double likely = kLikely * world.scenario().sensors.detection_scale;
   const std::size_t n = world.actors().size();
   const auto steps = static_cast<std::size_t>(world.scenario().duration_s / kStep_s) + 2;
   cells_.assign(n, std::vector<Cell>(steps));
   longest_.assign(n, {});
   std::vector<double> unseen_s(n, 0.0);
-  std::vector<Sight> sights;
   std::vector<Look> looks;
   for (std::size_t k = 0; k < steps; ++k) {
     const Snapshot snapshot = world.At(static_cast<double>(k) * kStep_s);
-    looks.assign(snapshot.actors.size(), {});
-    for (RadarSimulator& radar : radars) {
-      radar.Look(snapshot, sights);
-      for (std::size_t i = 0; i < looks.size(); ++i) {
-        looks[i].by_radar = looks[i].by_radar || sights[i].detection_probability >= likely;
-        looks[i].by_any = looks[i].by_any || sights[i].detection_probability > 0.0;
-      }
-    }
-    for (CameraSimulator& camera : cameras) {
-      camera.Look(snapshot, sights);
-      for (std::size_t i = 0; i < looks.size(); ++i) {
-        looks[i].by_camera = looks[i].by_camera || sights[i].detection_probability >= likely;
-        looks[i].by_any = looks[i].by_any || sights[i].detection_probability > 0.0;
-      }
-    }
+    sensors.Look(snapshot, likely, looks);
     if (k > 0) {  // What is not there any more keeps its last cell.
       for (std::size_t a = 0; a < n; ++a) cells_[a][k] = cells_[a][k - 1];
     }

@@ -23,6 +23,27 @@ struct Waiting {
   std::optional<Timestamp> first_look;
 };
 
+// A sensor's look at everybody who waits to be listed.
+void TakeLook(const SensorLook& look, const RunLog& log, std::vector<Waiting>& waiting) {
+  const Truth& truth = log.truth;
+  const SensorSpec& sensor = log.specs.sensors[look.sensor];
+  for (std::size_t o = 0; o < truth.objects.size(); ++o) {
+    const TruthObject& object = truth.objects[o];
+    Waiting& vehicle = waiting[o];
+    if (!object.is_vehicle() || vehicle.figures.is_listed) continue;
+    const TruthSample* sample = object.motion.InForce(look.stamp);
+    if (sample == nullptr) continue;
+    const double probability = DetectionProbability(*sample, sensor);
+    if (probability < kSeeing) continue;  // Asks too much of "confirmed in three".
+    if (!vehicle.first_look) {
+      vehicle.first_look = look.stamp;
+      vehicle.figures.is_standing = std::abs(sample->motion.speed_mps) < kStanding_mps;
+    }
+    ++vehicle.figures.looks;
+    vehicle.figures.expected_hits += probability;
+  }
+}
+
 }  // namespace
 
 Confirmation::Mean Confirmation::Average(Of which) const {
@@ -55,32 +76,13 @@ Confirmation JudgeConfirmation(const RunLog& log, const ScoringSettings& setting
   std::vector<SensorLook> looks = log.looks;
   std::stable_sort(looks.begin(), looks.end(),
                    [](const auto& a, const auto& b) { return a.received < b.received; });
-  const auto take_look = [&](const SensorLook& look) {
-    const SensorSpec& sensor = log.specs.sensors[look.sensor];
-    for (std::size_t o = 0; o < truth.objects.size(); ++o) {
-      const TruthObject& object = truth.objects[o];
-      Waiting& vehicle = waiting[o];
-      if (!object.is_vehicle() || vehicle.figures.is_listed) continue;
-      const TruthSample* sample = object.motion.InForce(look.stamp);
-      if (sample == nullptr) continue;
-      const double probability = DetectionProbability(*sample, sensor);
-      if (probability < kSeeing) continue;  // Asks too much of "confirmed in three".
-      if (!vehicle.first_look) {
-        vehicle.first_look = look.stamp;
-        vehicle.figures.is_standing = std::abs(sample->motion.speed_mps) < kStanding_mps;
-      }
-      ++vehicle.figures.looks;
-      vehicle.figures.expected_hits += probability;
-    }
-  };
-
   Gospa gospa({.cutoff_m = settings.cutoff_m, .order = settings.order});
   std::vector<Eigen::Vector2d> truth_points, track_points;
   std::vector<std::size_t> objects;
   std::size_t next = 0;
   for (const ReceivedList& list : log.lists[Index(ListKind::kLocal)]) {
     for (; next < looks.size() && looks[next].received <= list.received; ++next) {
-      take_look(looks[next]);
+      TakeLook(looks[next], log, waiting);
     }
     if (list.is_stale || list.tracks.empty()) continue;
     const bool is_anyone_waiting = std::any_of(waiting.begin(), waiting.end(), [](const auto& v) {

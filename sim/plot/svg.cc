@@ -116,77 +116,97 @@ double NiceStep(double span, int at_most) {
   return step;
 }
 
-std::string Draw(const Plot& plot) {
-  constexpr double kLeft = 58.0, kRight = 14.0, kTop = 34.0, kBottom = 42.0;
-  const double inner_width = plot.width - kLeft - kRight;
-  const double inner_height = plot.height - kTop - kBottom;
-  double top = plot.y_least_top;
-  for (const auto& series : plot.series) {
-    for (const auto& p : series.points) {
-      if (std::isfinite(p.y())) top = std::max(top, p.y());
-    }
-  }
-  if (!(top > 0.0)) top = 1.0;
-  const double y_step = NiceStep(top * 1.05, 5);
-  top = std::ceil(top * 1.02 / y_step) * y_step;
-  const double x_span = std::max(plot.x_to - plot.x_from, 1e-6);
-  const auto x_of = [&](double x) { return kLeft + (x - plot.x_from) / x_span * inner_width; };
-  const auto y_of = [&](double y) { return kTop + (1.0 - y / top) * inner_height; };
+namespace {
 
-  Svg svg(plot.width, plot.height);
+constexpr double kLeft = 58.0, kRight = 14.0, kTop = 34.0, kBottom = 42.0;
+
+// Where values lie in the picture.
+class Axes {
+ public:
+  explicit Axes(const Plot& plot)
+      : x_from(plot.x_from),
+        x_span(std::max(plot.x_to - plot.x_from, 1e-6)),
+        inner_width(plot.width - kLeft - kRight),
+        inner_height(plot.height - kTop - kBottom),
+        top(plot.y_least_top) {
+    for (const auto& series : plot.series) {
+      for (const auto& p : series.points) {
+        if (std::isfinite(p.y())) top = std::max(top, p.y());
+      }
+    }
+    if (!(top > 0.0)) top = 1.0;
+    y_step = NiceStep(top * 1.05, 5);
+    top = std::ceil(top * 1.02 / y_step) * y_step;
+  }
+
+  [[nodiscard]] double X(double x) const { return kLeft + (x - x_from) / x_span * inner_width; }
+  [[nodiscard]] double Y(double y) const { return kTop + (1.0 - y / top) * inner_height; }
+
+  double x_from;
+  double x_span;
+  double inner_width;
+  double inner_height;
+  double top;
+  double y_step = 1.0;
+};
+
+void DrawBands(const Plot& plot, const Axes& axes, Svg& svg) {
   for (const PlotBand& band : plot.bands) {
     const double from = std::max(band.from, plot.x_from);
     const double to = std::min(band.to, plot.x_to);
-    svg.Rect(x_of(from), kTop, x_of(to) - x_of(from), inner_height,
+    svg.Rect(axes.X(from), kTop, axes.X(to) - axes.X(from), axes.inner_height,
              std::string("fill=\"") + band.fill + "\"");
   }
+}
+
+void DrawGrid(const Plot& plot, const Axes& axes, Svg& svg) {
   const std::string grid = std::string("stroke=\"") + colour::kGrid + "\"";
-  for (double y = 0.0; y <= top * 1.0001; y += y_step) {
-    svg.Line(kLeft, y_of(y), plot.width - kRight, y_of(y), grid);
-    svg.Text(kLeft - 8.0, y_of(y) + 4.0, Number(y), "class=\"tick\" text-anchor=\"end\"");
+  for (double y = 0.0; y <= axes.top * 1.0001; y += axes.y_step) {
+    svg.Line(kLeft, axes.Y(y), plot.width - kRight, axes.Y(y), grid);
+    svg.Text(kLeft - 8.0, axes.Y(y) + 4.0, Number(y), "class=\"tick\" text-anchor=\"end\"");
   }
-  const double x_step = NiceStep(x_span, 14);
+  const double x_step = NiceStep(axes.x_span, 14);
   for (double x = std::ceil(plot.x_from / x_step - 1e-9) * x_step; x <= plot.x_to + 1e-9;
        x += x_step) {
-    svg.Line(x_of(x), kTop + inner_height, x_of(x), kTop + inner_height + 4.0,
+    svg.Line(axes.X(x), kTop + axes.inner_height, axes.X(x), kTop + axes.inner_height + 4.0,
              std::string("stroke=\"") + colour::kMuted + "\"");
-    svg.Text(x_of(x), kTop + inner_height + 18.0, Number(x),
+    svg.Text(axes.X(x), kTop + axes.inner_height + 18.0, Number(x),
              "class=\"tick\" text-anchor=\"middle\"");
   }
-  svg.Line(kLeft, y_of(0.0), plot.width - kRight, y_of(0.0),
+  svg.Line(kLeft, axes.Y(0.0), plot.width - kRight, axes.Y(0.0),
            std::string("stroke=\"") + colour::kMuted + "\"");
-  svg.Text(kLeft + inner_width / 2.0, plot.height - 6.0, plot.x_label,
+  svg.Text(kLeft + axes.inner_width / 2.0, plot.height - 6.0, plot.x_label,
            "class=\"label\" text-anchor=\"middle\"");
   svg.Text(0.0, 0.0, plot.y_label,
            "class=\"label\" text-anchor=\"middle\" transform=\"translate(14 " +
-               Number(kTop + inner_height / 2.0) + ") rotate(-90)\"");
+               Number(kTop + axes.inner_height / 2.0) + ") rotate(-90)\"");
+}
 
-  svg.OpenClip("clip-" + plot.id, kLeft, kTop - 2.0, inner_width, inner_height + 4.0);
-  for (const auto& series : plot.series) {
-    const std::string style = "fill=\"none\" stroke=\"" + series.colour + "\" stroke-width=\"" +
-                              Number(series.width) + "\" stroke-linejoin=\"round\"" +
-                              (series.is_dashed ? " stroke-dasharray=\"5 4\"" : "");
-    std::vector<Eigen::Vector2d> run;
-    const auto flush = [&] {
-      if (run.size() == 1) {
-        svg.Circle(run[0].x(), run[0].y(), std::max(2.5, series.width),
-                   "fill=\"" + series.colour + "\"");
-      } else if (!run.empty()) {
-        svg.Polyline(run, style);
-      }
-      run.clear();
-    };
-    for (const auto& p : series.points) {
-      if (std::isfinite(p.y())) {
-        run.emplace_back(x_of(p.x()), y_of(p.y()));
-      } else {
-        flush();
-      }
+void DrawSeries(const PlotSeries& series, const Axes& axes, Svg& svg) {
+  const std::string style = "fill=\"none\" stroke=\"" + series.colour + "\" stroke-width=\"" +
+                            Number(series.width) + "\" stroke-linejoin=\"round\"" +
+                            (series.is_dashed ? " stroke-dasharray=\"5 4\"" : "");
+  std::vector<Eigen::Vector2d> run;
+  const auto flush = [&] {
+    if (run.size() == 1) {
+      svg.Circle(run[0].x(), run[0].y(), std::max(2.5, series.width),
+                 "fill=\"" + series.colour + "\"");
+    } else if (!run.empty()) {
+      svg.Polyline(run, style);
     }
-    flush();
+    run.clear();
+  };
+  for (const auto& p : series.points) {
+    if (std::isfinite(p.y())) {
+      run.emplace_back(axes.X(p.x()), axes.Y(p.y()));
+    } else {
+      flush();
+    }
   }
-  svg.Close();
+  flush();
+}
 
+void DrawLegend(const Plot& plot, Svg& svg) {
   double x = kLeft;
   const auto legend_text = [&](const std::string& label) {
     svg.Text(x, 19.0, label, "class=\"legend\"");
@@ -207,6 +227,19 @@ std::string Draw(const Plot& plot) {
     x += 28.0;
     legend_text(band.label);
   }
+}
+
+}  // namespace
+
+std::string Draw(const Plot& plot) {
+  const Axes axes(plot);
+  Svg svg(plot.width, plot.height);
+  DrawBands(plot, axes, svg);
+  DrawGrid(plot, axes, svg);
+  svg.OpenClip("clip-" + plot.id, kLeft, kTop - 2.0, axes.inner_width, axes.inner_height + 4.0);
+  for (const PlotSeries& series : plot.series) DrawSeries(series, axes, svg);
+  svg.Close();
+  DrawLegend(plot, svg);
   return svg.Finish();
 }
 

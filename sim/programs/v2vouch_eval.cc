@@ -99,6 +99,46 @@ int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
   return kGood;
 }
 
+int PrintSummary(const std::string& path, const v2vouch::evaluation::RunLog& log, bool as_json) {
+  using namespace v2vouch::evaluation;
+  std::fputs((as_json ? ListSummaryJson(log) : ListSummary(log)).c_str(), stdout);
+  const bool has_lists =
+      std::ranges::any_of(log.lists, [](const auto& lists) { return !lists.empty(); });
+  if (has_lists) return kGood;
+  return Complain(path + ": holds no track lists; `v2vouch-replay LOG --out OUT` makes them");
+}
+
+struct Options {
+  std::string log_path, paper_path, report_folder, lcm_url;
+  v2vouch::evaluation::ScoringSettings settings;
+  bool as_json = false, summary = false, use_gates = false, spoof = false, message_checks = false;
+};
+
+void AddOptions(CLI::App& app, Options& options) {
+  app.add_option("LOG", options.log_path, "Recorded run: outputs of the daemon or v2vouch-replay")
+      ->required();
+  app.add_option("--paper", options.paper_path,
+                 "The same run with `association: paper`, shown beside");
+  app.add_option("--report", options.report_folder, "Folder for index.html (made if absent)");
+  app.add_option("--cutoff", options.settings.cutoff_m, "GOSPA cutoff c [m]")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  app.add_option("--switching-penalty", options.settings.switching_m,
+                 "Switching penalty [m]; default half the cutoff")
+      ->check(CLI::Range(0.0, 1000.0));
+  app.add_flag("--json", options.as_json, "Figures as JSON on standard output");
+  app.add_flag("--summary", options.summary,
+               "Counts and lengths of the lists only; needs no truth");
+  app.add_flag("--gates", options.use_gates, "Exit code 1 when a gate is missed");
+  auto* of_spoof =
+      app.add_flag("--spoof", options.spoof, "Spoof resistance instead of tracking accuracy");
+  app.add_flag("--message-checks", options.message_checks,
+               "With --spoof: message-only checks of the published kind on the same messages")
+      ->needs(of_spoof);
+  app.add_option("-l,--lcm-url", options.lcm_url, "Accepted for uniformity; logs need no network")
+      ->check(v2vouch::CheckLcmUrl);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -107,57 +147,32 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Judges a recorded run against its truth: GOSPA with all parts, bound, gates, report.");
   app.footer(kExamples);
-  std::string log_path, paper_path, report_folder, lcm_url;
-  ScoringSettings settings;
-  bool as_json = false, summary = false, use_gates = false, spoof = false, message_checks = false;
-  app.add_option("LOG", log_path, "Recorded run: outputs of the daemon or v2vouch-replay")
-      ->required();
-  app.add_option("--paper", paper_path, "The same run with `association: paper`, shown beside");
-  app.add_option("--report", report_folder, "Folder for index.html (made if absent)");
-  app.add_option("--cutoff", settings.cutoff_m, "GOSPA cutoff c [m]")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str();
-  app.add_option("--switching-penalty", settings.switching_m,
-                 "Switching penalty [m]; default half the cutoff")
-      ->check(CLI::Range(0.0, 1000.0));
-  app.add_flag("--json", as_json, "Figures as JSON on standard output");
-  app.add_flag("--summary", summary, "Counts and lengths of the lists only; needs no truth");
-  app.add_flag("--gates", use_gates, "Exit code 1 when a gate is missed");
-  auto* of_spoof = app.add_flag("--spoof", spoof, "Spoof resistance instead of tracking accuracy");
-  app.add_flag("--message-checks", message_checks,
-               "With --spoof: message-only checks of the published kind on the same messages")
-      ->needs(of_spoof);
-  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; logs need no network")
-      ->check(v2vouch::CheckLcmUrl);
+  Options options;
+  AddOptions(app, options);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-eval", argc, argv)) return *code;
 
-  if (spoof) return JudgeLies(log_path, message_checks, as_json);
+  const std::string& log_path = options.log_path;
+  if (options.spoof) return JudgeLies(log_path, options.message_checks, options.as_json);
   RunLog log;
   if (!Load(log_path, log)) return kFailed;
-  if (summary) {
-    std::fputs((as_json ? ListSummaryJson(log) : ListSummary(log)).c_str(), stdout);
-    const bool has_lists =
-        std::ranges::any_of(log.lists, [](const auto& lists) { return !lists.empty(); });
-    if (has_lists) return kGood;
-    return Complain(log_path + ": holds no track lists; `v2vouch-replay LOG --out OUT` makes them");
-  }
+  if (options.summary) return PrintSummary(log_path, log, options.as_json);
   if (const std::string why = WhyNotJudged(log); !why.empty()) {
     return Complain(log_path + ": " + why);
   }
-  const auto evaluation = Evaluate(std::move(log), settings);
+  const auto evaluation = Evaluate(std::move(log), options.settings);
   std::unique_ptr<Evaluation> paper;
-  if (!paper_path.empty()) {
+  if (!options.paper_path.empty()) {
     RunLog paper_log;
-    if (!Load(paper_path, paper_log)) return kFailed;
+    if (!Load(options.paper_path, paper_log)) return kFailed;
     if (const std::string why = WhyNotJudged(paper_log); !why.empty()) {
-      return Complain(paper_path + ": " + why);
+      return Complain(options.paper_path + ": " + why);
     }
-    paper = Evaluate(std::move(paper_log), settings);
+    paper = Evaluate(std::move(paper_log), options.settings);
   }
-  if (!report_folder.empty()) {
+  if (!options.report_folder.empty()) {
     std::string error;
     const std::string file =
-        WriteReport(report_folder, *evaluation, paper.get(), PicturesOf(log_path), error);
+        WriteReport(options.report_folder, *evaluation, paper.get(), PicturesOf(log_path), error);
     if (file.empty()) {
       std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());
       return kFailed;
@@ -165,9 +180,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "report: %s\n", file.c_str());
   }
   const std::string figures =
-      as_json ? ToJson(*evaluation, paper.get()) : ToTable(*evaluation, paper.get());
+      options.as_json ? ToJson(*evaluation, paper.get()) : ToTable(*evaluation, paper.get());
   std::fputs(figures.c_str(), stdout);
-  if (use_gates) {
+  if (options.use_gates) {
     for (const Gate& gate : evaluation->gates) {
       if (!gate.passes()) return kFailed;
     }

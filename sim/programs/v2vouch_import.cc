@@ -112,20 +112,18 @@ int ImportSumo(const std::string& path, const std::string& out, SumoOptions opti
   return 0;
 }
 
-int Run(int argc, char** argv) {
-  CLI::App app{"Turns recordings of others into LCM logs and scenarios.", "v2vouch-import"};
-  app.footer(kExamples);
-  app.require_subcommand(1);
-  bool as_json = false;
+struct Request {
   std::string in;
   std::string out;
+  bool as_json = false;
+};
 
-  Comma2k19Options drive;
-  double latency_ms = drive.gnss_latency_s * 1e3;
+CLI::App* AddComma2k19(CLI::App& app, Request& request, Comma2k19Options& drive,
+                       double& latency_ms) {
   CLI::App* const comma =
       app.add_subcommand("comma2k19", "a real drive (radar objects, speed, gyro, GNSS) -> LCM log");
-  comma->add_option("DIR", in, "folder of the segment's CSV files")->required();
-  comma->add_option("--out", out, "log to write")->required();
+  comma->add_option("DIR", request.in, "folder of the segment's CSV files")->required();
+  comma->add_option("--out", request.out, "log to write")->required();
   comma->add_option("--radar", drive.radar_name, "name of the radar in the vehicle file")
       ->capture_default_str();
   comma
@@ -137,15 +135,16 @@ int Run(int argc, char** argv) {
   comma->add_option("--gnss-latency-ms", latency_ms, "from measurement to the receiver's output")
       ->check(CLI::Range(0.0, 2000.0))
       ->capture_default_str();
-  comma->add_flag("--json", as_json, "figures as one line of JSON");
+  comma->add_flag("--json", request.as_json, "figures as one line of JSON");
+  return comma;
+}
 
-  SumoOptions traffic;
-  traffic.name.clear();
-  bool no_buildings = false;
+CLI::App* AddSumo(CLI::App& app, Request& request, SumoOptions& traffic, bool& no_buildings) {
   CLI::App* const sumo =
       app.add_subcommand("sumo-fcd", "SUMO floating car data (CSV, .gz too) -> scenario folder");
-  sumo->add_option("FCD", in, "table with one row per vehicle and step")->required();
-  sumo->add_option("--out-scenario", out, "folder to write scenario.yaml and trajectories.csv to")
+  sumo->add_option("FCD", request.in, "table with one row per vehicle and step")->required();
+  sumo->add_option("--out-scenario", request.out,
+                   "folder to write scenario.yaml and trajectories.csv to")
       ->required();
   sumo->add_option("--name", traffic.name, "of the scenario; default: the folder's");
   sumo->add_option("--ego", traffic.ego,
@@ -166,9 +165,11 @@ int Run(int argc, char** argv) {
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   sumo->add_option("--seed", traffic.seed, "draws the vans")->capture_default_str();
-  sumo->add_flag("--json", as_json, "figures as one line of JSON");
+  sumo->add_flag("--json", request.as_json, "figures as one line of JSON");
+  return sumo;
+}
 
-  KittiRequest street;
+CLI::App* AddKitti(CLI::App& app, KittiRequest& street) {
   CLI::App* const kitti =
       app.add_subcommand("kitti", "a KITTI tracking sequence (labels, pictures) -> LCM log");
   kitti->add_option("--labels", street.labels, "label file of the sequence (label_02)");
@@ -195,13 +196,30 @@ int Run(int argc, char** argv) {
   kitti->add_option("--seed", street.options.seed, "draws the noise")->capture_default_str();
   kitti->add_option("--out", street.out, "log to write")->required();
   kitti->add_flag("--json", street.as_json, "figures as one line of JSON");
+  return kitti;
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app{"Turns recordings of others into LCM logs and scenarios.", "v2vouch-import"};
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  Request request;
+  Comma2k19Options drive;
+  double latency_ms = drive.gnss_latency_s * 1e3;
+  const CLI::App* const comma = AddComma2k19(app, request, drive, latency_ms);
+  SumoOptions traffic;
+  traffic.name.clear();
+  bool no_buildings = false;
+  AddSumo(app, request, traffic, no_buildings);
+  KittiRequest street;
+  const CLI::App* const kitti = AddKitti(app, street);
 
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-import", argc, argv)) return *code;
   drive.gnss_latency_s = latency_ms * 1e-3;
   traffic.has_buildings = !no_buildings;
   if (kitti->parsed()) return ImportKitti(street);
-  return comma->parsed() ? ImportComma2k19(in, out, drive, as_json)
-                         : ImportSumo(in, out, traffic, as_json);
+  return comma->parsed() ? ImportComma2k19(request.in, request.out, drive, request.as_json)
+                         : ImportSumo(request.in, request.out, traffic, request.as_json);
 }
 
 }  // namespace

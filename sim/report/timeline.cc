@@ -62,33 +62,37 @@ std::vector<Row> ChooseRows(const Evaluation& evaluation, std::size_t most) {
   return rows;
 }
 
-}  // namespace
+// The picture and its time axis.
+struct Chart {
+  double period;
+  double end_s;
+  double bottom;
+  Svg svg;
 
-std::string Timeline(const Evaluation& evaluation, std::size_t rows_at_most) {
-  const std::vector<Row> rows = ChooseRows(evaluation, rows_at_most);
-  const double period = evaluation.settings.period_s;
-  const double end_s = std::max(period, evaluation.duration_s);
-  const double bottom = kTop + kRow * static_cast<double>(rows.size());
-  Svg svg(kWidth, bottom + 36.0);
-  const auto x_of = [&](double t_s) { return kLeft + t_s / end_s * (kWidth - kLeft - kRight); };
-  const auto bar = [&](double from_s, double to_s, double y, double height, const char* fill) {
-    svg.Rect(x_of(from_s), y, std::max(0.6, x_of(to_s) - x_of(from_s)), height,
+  [[nodiscard]] double X(double t_s) const {
+    return kLeft + t_s / end_s * (kWidth - kLeft - kRight);
+  }
+
+  void Bar(double from_s, double to_s, double y, double height, const char* fill) {
+    svg.Rect(X(from_s), y, std::max(0.6, X(to_s) - X(from_s)), height,
              std::string("fill=\"") + fill + "\"");
-  };
+  }
+
   // Runs of instants that follow each other, of one colour.
-  const auto stretches = [&](const std::vector<char>& on, double y, double height,
-                             const char* fill) {
+  void Stretches(const std::vector<char>& on, double y, double height, const char* fill) {
     for (std::size_t k = 0; k < on.size();) {
       std::size_t end = k;
       while (end < on.size() && on[end] != 0) ++end;
       if (end > k) {
-        bar(period * static_cast<double>(k), std::min(end_s, period * static_cast<double>(end)), y,
+        Bar(period * static_cast<double>(k), std::min(end_s, period * static_cast<double>(end)), y,
             height, fill);
       }
       k = std::max(end, k + 1);
     }
-  };
+  }
+};
 
+void DrawLegend(Svg& svg) {
   double legend_x = kLeft;
   const auto legend = [&](const char* label, const char* fill, double width) {
     svg.Rect(legend_x, 9.0, 20.0, 8.0, std::string("fill=\"") + fill + "\"");
@@ -101,8 +105,13 @@ std::string Timeline(const Evaluation& evaluation, std::size_t rows_at_most) {
   legend("hidden", colour::kHidden, 86.0);
   legend("out of view", colour::kOutOfView, 114.0);
   legend("within the disc", "#eef0f3", 130.0);
+}
 
-  std::array<std::map<std::size_t, std::vector<char>>, 3> held;
+// Per list and object: the instants the object is matched at.
+using Held = std::array<std::map<std::size_t, std::vector<char>>, 3>;
+
+Held HeldInstants(const Evaluation& evaluation) {
+  Held held;
   for (const ListKind kind : kLists) {
     for (const MatchedPair& pair : evaluation.cutoffs.front().all[Index(kind)].pairs) {
       auto& on = held[Index(kind)][pair.object];
@@ -110,39 +119,62 @@ std::string Timeline(const Evaluation& evaluation, std::size_t rows_at_most) {
       on[pair.instant] = 1;
     }
   }
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const TruthObject& object = evaluation.log.truth.objects[rows[r].object];
-    const double y = kTop + kRow * static_cast<double>(r);
-    stretches(rows[r].is_inside, y + 3.0, kRow - 6.0, "#eef0f3");
-    for (const auto& [sighting, fill] : {std::pair(Sighting::kHidden, colour::kHidden),
-                                         std::pair(Sighting::kOutOfView, colour::kOutOfView)}) {
-      for (const Interval& unseen : UnseenIntervals(evaluation, rows[r].object, false, sighting)) {
-        bar(unseen.from_s, std::min(end_s, unseen.to_s), y + 3.0, kRow - 6.0, fill);
-      }
+  return held;
+}
+
+void DrawRow(const Evaluation& evaluation, const Row& row, const Held& held, double y,
+             Chart& chart) {
+  const TruthObject& object = evaluation.log.truth.objects[row.object];
+  chart.Stretches(row.is_inside, y + 3.0, kRow - 6.0, "#eef0f3");
+  for (const auto& [sighting, fill] : {std::pair(Sighting::kHidden, colour::kHidden),
+                                       std::pair(Sighting::kOutOfView, colour::kOutOfView)}) {
+    for (const Interval& unseen : UnseenIntervals(evaluation, row.object, false, sighting)) {
+      chart.Bar(unseen.from_s, std::min(chart.end_s, unseen.to_s), y + 3.0, kRow - 6.0, fill);
     }
-    constexpr std::array kFills = {colour::kLocal, colour::kV2v, colour::kPriority};
-    for (const ListKind kind : kLists) {
-      const auto found = held[Index(kind)].find(rows[r].object);
-      if (found == held[Index(kind)].end()) continue;
-      stretches(found->second, y + 5.0 + (kBar + 1.0) * static_cast<double>(Index(kind)), kBar,
-                kFills[Index(kind)]);
-    }
-    svg.Text(kLeft - 10.0, y + kRow / 2.0 + 4.0,
-             std::to_string(object.id) + " " + ClassName(object.object_class) +
-                 (object.has_v2v ? ", V2V" : ""),
-             "class=\"tick\" text-anchor=\"end\"");
   }
-  const double step = NiceStep(end_s, 14);
-  for (double t = 0.0; t <= end_s + 1e-9; t += step) {
-    svg.Line(x_of(t), bottom, x_of(t), bottom + 4.0,
+  constexpr std::array kFills = {colour::kLocal, colour::kV2v, colour::kPriority};
+  for (const ListKind kind : kLists) {
+    const auto found = held[Index(kind)].find(row.object);
+    if (found == held[Index(kind)].end()) continue;
+    chart.Stretches(found->second, y + 5.0 + (kBar + 1.0) * static_cast<double>(Index(kind)), kBar,
+                    kFills[Index(kind)]);
+  }
+  chart.svg.Text(kLeft - 10.0, y + kRow / 2.0 + 4.0,
+                 std::to_string(object.id) + " " + ClassName(object.object_class) +
+                     (object.has_v2v ? ", V2V" : ""),
+                 "class=\"tick\" text-anchor=\"end\"");
+}
+
+void DrawTimeAxis(Chart& chart) {
+  Svg& svg = chart.svg;
+  const double bottom = chart.bottom;
+  const double step = NiceStep(chart.end_s, 14);
+  for (double t = 0.0; t <= chart.end_s + 1e-9; t += step) {
+    svg.Line(chart.X(t), bottom, chart.X(t), bottom + 4.0,
              std::string("stroke=\"") + colour::kMuted + "\"");
-    svg.Text(x_of(t), bottom + 17.0, Number(t), "class=\"tick\" text-anchor=\"middle\"");
+    svg.Text(chart.X(t), bottom + 17.0, Number(t), "class=\"tick\" text-anchor=\"middle\"");
   }
   svg.Line(kLeft, bottom, kWidth - kRight, bottom,
            std::string("stroke=\"") + colour::kMuted + "\"");
   svg.Text((kLeft + kWidth - kRight) / 2.0, bottom + 33.0, "time [s]",
            "class=\"label\" text-anchor=\"middle\"");
-  return svg.Finish();
+}
+
+}  // namespace
+
+std::string Timeline(const Evaluation& evaluation, std::size_t rows_at_most) {
+  const std::vector<Row> rows = ChooseRows(evaluation, rows_at_most);
+  const double period = evaluation.settings.period_s;
+  const double end_s = std::max(period, evaluation.duration_s);
+  const double bottom = kTop + kRow * static_cast<double>(rows.size());
+  Chart chart{period, end_s, bottom, Svg(kWidth, bottom + 36.0)};
+  DrawLegend(chart.svg);
+  const Held held = HeldInstants(evaluation);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    DrawRow(evaluation, rows[r], held, kTop + kRow * static_cast<double>(r), chart);
+  }
+  DrawTimeAxis(chart);
+  return chart.svg.Finish();
 }
 
 }  // namespace v2vouch::evaluation

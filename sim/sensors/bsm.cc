@@ -57,6 +57,45 @@ Channel Between(const World& world, const Snapshot& snapshot, const Vec2& sender
           radio.tx_power_dbm - PathLoss_db(distance)};
 }
 
+Statement StatementOfEgo(const VehicleConfig& vehicle, const EgoTruth& ego) {
+  Statement said;
+  said.centre = ego.PointAt(vehicle.centre_x_m, 0.0);
+  said.yaw_rad = ego.yaw_rad;
+  said.speed_mps = ego.speed_mps;
+  said.accel_mps2 = ego.accel_mps2;
+  said.yaw_rate_radps = ego.yaw_rate_radps;
+  said.length_m = vehicle.length_m;
+  said.width_m = vehicle.width_m;
+  return said;
+}
+
+Statement StatementOf(const Actor& actor, double time_s) {
+  Statement said;
+  const Motion motion = actor.trajectory.At(time_s);
+  said.centre = motion.centre;
+  said.yaw_rad = motion.yaw_rad;
+  said.speed_mps = motion.speed_mps;
+  said.accel_mps2 = motion.accel_mps2;
+  said.yaw_rate_radps = motion.yaw_rate_radps;
+  said.length_m = actor.size.length_m;
+  said.width_m = actor.size.width_m;
+  return said;
+}
+
+double ReportedAccuracy(const SenderSpec& sender, const BsmSpec& spec, const Vec2& burst) {
+  double semi_major_m = 0.0;
+  const GnssErrorSpec& e = spec.gnss;
+  if (sender.semi_major_m > 0.0) {
+    semi_major_m = sender.semi_major_m;
+  } else if (spec.semi_major_m > 0.0) {
+    semi_major_m = spec.semi_major_m;
+  } else {
+    semi_major_m = std::sqrt(e.bias_sigma_m * e.bias_sigma_m + e.markov_sigma_m * e.markov_sigma_m +
+                             e.white_sigma_m * e.white_sigma_m);
+  }
+  return spec.bursts.is_reported ? std::hypot(semi_major_m, burst.norm()) : semi_major_m;
+}
+
 }  // namespace
 
 void Quantise(const SenderState& state, bsm_t& bsm) {
@@ -157,6 +196,22 @@ void BsmSender::Advance() {
   next_time_s_ = std::max(0.0, next_time_s_);
 }
 
+BsmSender::Draws BsmSender::DrawErrors(std::int64_t number, double dt_s) {
+  const BsmSpec& spec = world_.scenario().bsm;
+  Draws draws;
+  draws.position = position_.Step(dt_s);
+  draws.speed_mps = speed_.Step(dt_s, errors_);
+  draws.heading_rad = heading_.Step(dt_s, errors_);
+  Random random = SubjectRandom(seed_, "bsm", {subject_, static_cast<std::uint64_t>(number)});
+  draws.speed_noise_mps = random.Normal(0.0, sender_.noise_scale * spec.speed_white_mps);
+  draws.heading_noise_rad = random.Normal(0.0, sender_.noise_scale * spec.heading_white_rad);
+  draws.latency_s =
+      sender_.latency_scale * (spec.latency_s + spec.latency_spread_s * random.Uniform());
+  draws.luck = random.Uniform();
+  draws.fading_db = random.Normal(0.0, 2.0);
+  return draws;
+}
+
 std::optional<Message> BsmSender::NextMessage() {
   const BsmSpec& spec = world_.scenario().bsm;
   const double time = next_time_s_;
@@ -170,82 +225,49 @@ std::optional<Message> BsmSender::NextMessage() {
   Advance();
 
   // Errors move on with every message, sent or lost, so that loss changes nothing else.
-  const GnssError::Value position_error = position_.Step(dt);
-  const double speed_error = speed_.Step(dt, errors_);
-  const double heading_error = heading_.Step(dt, errors_);
-  Random random = SubjectRandom(seed_, "bsm", {subject_, static_cast<std::uint64_t>(number)});
-  const double speed_noise = random.Normal(0.0, sender_.noise_scale * spec.speed_white_mps);
-  const double heading_noise = random.Normal(0.0, sender_.noise_scale * spec.heading_white_rad);
-  const double latency =
-      sender_.latency_scale * (spec.latency_s + spec.latency_spread_s * random.Uniform());
-  const double luck = random.Uniform();
-  const double fading = random.Normal(0.0, 2.0);
+  const Draws draws = DrawErrors(number, dt);
 
   const Snapshot snapshot = world_.At(time);
   Message message;
   Statement& said = message.said;
   Vec2 radio;  // Where the antenna is.
   if (actor_ < 0) {
-    const VehicleConfig& vehicle = world_.vehicle();
-    said.centre = snapshot.ego.PointAt(vehicle.centre_x_m, 0.0);
-    said.yaw_rad = snapshot.ego.yaw_rad;
-    said.speed_mps = snapshot.ego.speed_mps;
-    said.accel_mps2 = snapshot.ego.accel_mps2;
-    said.yaw_rate_radps = snapshot.ego.yaw_rate_radps;
-    said.length_m = vehicle.length_m;
-    said.width_m = vehicle.width_m;
+    said = StatementOfEgo(world_.vehicle(), snapshot.ego);
     radio = is_device() ? snapshot.ego.PointAt(-kDeviceBehind_m, 0.0) : said.centre;
   } else {
     const Actor& actor = world_.actors()[static_cast<std::size_t>(actor_)];
     const double then = time - spec.position_age_s - sender_.position_age_s;
     if (!actor.trajectory.Exists(time) || !actor.trajectory.Exists(then)) return std::nullopt;
-    const Motion motion = actor.trajectory.At(then);
-    said.centre = motion.centre;
-    said.yaw_rad = motion.yaw_rad;
-    said.speed_mps = motion.speed_mps;
-    said.accel_mps2 = motion.accel_mps2;
-    said.yaw_rate_radps = motion.yaw_rate_radps;
-    said.length_m = actor.size.length_m;
-    said.width_m = actor.size.width_m;
-    radio = motion.centre;
+    said = StatementOf(actor, then);
+    radio = said.centre;
   }
   const Channel channel = Between(world_, snapshot, radio, subject_);
   const Vec2 bias(sender_.bias_east_m, sender_.bias_north_m);
   const Vec2 burst = bursts_.At(time);
   said.time_s = time;
-  message.error = bias + position_error.horizontal + burst;
-  said.centre = said.centre + bias + position_error.horizontal + burst;
+  message.error = bias + draws.position.horizontal + burst;
+  said.centre = said.centre + bias + draws.position.horizontal + burst;
   if (said.length_m > kLong_m) said.centre += spec.long_reference_m * Direction(said.yaw_rad);
-  said.height_m = position_error.height_m;
+  said.height_m = draws.position.height_m;
   said.accel_lat_mps2 = said.speed_mps * said.yaw_rate_radps;
   const bool stands = std::abs(said.speed_mps) < 0.3;
   if (!stands || !has_heading_) {  // A standing receiver holds its last heading.
-    held_yaw_rad_ = said.yaw_rad + heading_error + heading_noise;
+    held_yaw_rad_ = said.yaw_rad + draws.heading_rad + draws.heading_noise_rad;
     has_heading_ = true;
   }
   said.yaw_rad = held_yaw_rad_;
-  said.speed_mps = stands ? 0.0 : said.speed_mps + speed_error + speed_noise;
-  const GnssErrorSpec& e = spec.gnss;
-  if (sender_.semi_major_m > 0.0) {
-    said.semi_major_m = sender_.semi_major_m;
-  } else if (spec.semi_major_m > 0.0) {
-    said.semi_major_m = spec.semi_major_m;
-  } else {
-    said.semi_major_m =
-        std::sqrt(e.bias_sigma_m * e.bias_sigma_m + e.markov_sigma_m * e.markov_sigma_m +
-                  e.white_sigma_m * e.white_sigma_m);
-  }
-  if (spec.bursts.is_reported) said.semi_major_m = std::hypot(said.semi_major_m, burst.norm());
+  said.speed_mps = stands ? 0.0 : said.speed_mps + draws.speed_mps + draws.speed_noise_mps;
+  said.semi_major_m = ReportedAccuracy(sender_, spec, burst);
   message.time_s = time;
   message.stamp_s = time;
   message.signed_s = time;
-  message.signed_after_s = kSignedAfter * latency;
-  message.latency_s = latency;
+  message.signed_after_s = kSignedAfter * draws.latency_s;
+  message.latency_s = draws.latency_s;
   message.identity = IdentityOf(seed_, subject_, IdentityNumber(sender_, time));
   message.msg_count = static_cast<int>((first_msg_count_ + number) % 128);
-  message.rssi_dbm = channel.rssi_dbm + fading;
+  message.rssi_dbm = channel.rssi_dbm + draws.fading_db;
   message.loss = channel.loss;
-  message.is_lost = luck < channel.loss || gaps_.IsSilent(time);
+  message.is_lost = draws.luck < channel.loss || gaps_.IsSilent(time);
   message.device = subject_;
   message.vehicle = subject_;
   message.honest = said;

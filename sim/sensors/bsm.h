@@ -62,6 +62,14 @@ class BsmSender {
 
  private:
   BsmSender(const World& world, int actor, std::uint32_t subject, std::uint64_t seed);
+  // What chance decides about one message.
+  struct Draws {
+    GnssError::Value position;
+    double speed_mps, heading_rad;              // Slow errors.
+    double speed_noise_mps, heading_noise_rad;  // White.
+    double latency_s, luck, fading_db;
+  };
+  Draws DrawErrors(std::int64_t number, double dt_s);
   void Advance();
   [[nodiscard]] bool is_device() const { return subject_ >= kFirstDeviceId; }
 

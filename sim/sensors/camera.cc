@@ -48,6 +48,11 @@ Eigen::Vector2d Distorted(const CameraConfig& camera, double x, double y) {
           y * radial + k(2) * (r2 + 2.0 * y * y) + 2.0 * k(3) * x * y};
 }
 
+void SetClass(ObjectClass object_class, camera_box_t& box) {
+  box.class_id = static_cast<std::int32_t>(object_class);
+  box.class_name = ObjectClassName(object_class);
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector2d> Project(const CameraConfig& camera, const Eigen::Vector3d& p_B,
@@ -94,15 +99,13 @@ Eigen::Vector3d CameraSimulator::ToBody(const EgoTruth& ego, const Vec2& point, 
   return {d.dot(forward), d.dot(LeftOf(forward)), z_m};
 }
 
-void CameraSimulator::LookClosely(const Snapshot& snapshot, double extra_pitch_rad,
-                                  std::vector<Seen>& seen) {
+CameraSimulator::Cover CameraSimulator::CastRays(const Snapshot& snapshot, double extra_pitch_rad,
+                                                 std::vector<Seen>& seen) {
   const Vec2 origin = snapshot.ego.PointAt(camera_.x_m, camera_.y_m);
   const double yaw = snapshot.ego.yaw_rad + camera_.yaw_rad;
   const std::size_t n = snapshot.actors.size();
   skyline_.Cast(origin, yaw, camera_.max_range_m + 20.0, snapshot, world_.walls());
-  seen.assign(n, {});
-  std::vector<double> whole(n, 0.0);
-  std::vector<double> open(n, 0.0);
+  Cover cover{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0)};
   for (int ray = 0; ray < skyline_.size(); ++ray) {
     const Vec2 direction = Direction(yaw + skyline_.azimuth_rad(ray));
     double covered_to = -1e9;  // Tangent of elevation up to which nearer objects cover this ray.
@@ -111,10 +114,10 @@ void CameraSimulator::LookClosely(const Snapshot& snapshot, double extra_pitch_r
       const double high = (hit.height_m - camera_.z_m) / hit.range_m;
       const auto object = static_cast<std::size_t>(hit.object);
       if (object < n) {
-        whole[object] += high - low;
+        cover.whole[object] += high - low;
         const double from = std::max(low, covered_to);
         if (from < high) {
-          open[object] += high - from;
+          cover.open[object] += high - from;
           const Vec2 point = origin + hit.range_m * direction;
           for (const double tangent : {from, high}) {
             const auto pixel =
@@ -127,26 +130,40 @@ void CameraSimulator::LookClosely(const Snapshot& snapshot, double extra_pitch_r
       covered_to = std::max(covered_to, high);
     }
   }
+  return cover;
+}
+
+// The exact outline of the cuboid, far roof edges included.
+void CameraSimulator::AddOutline(const EgoTruth& ego, const ActorState& actor,
+                                 double extra_pitch_rad, PixelBox& box) const {
+  const auto corners = actor.box().Corners();
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (int step = 0; step < 8; ++step) {
+      const Vec2 point = corners[k] + (corners[(k + 1) % 4] - corners[k]) * (step / 8.0);
+      for (const double z : {0.0, actor.actor->size.height_m}) {
+        const auto pixel = Project(camera_, ToBody(ego, point, z), extra_pitch_rad);
+        if (pixel) box.Add(*pixel);
+      }
+    }
+  }
+}
+
+void CameraSimulator::LookClosely(const Snapshot& snapshot, double extra_pitch_rad,
+                                  std::vector<Seen>& seen) {
+  const Vec2 origin = snapshot.ego.PointAt(camera_.x_m, camera_.y_m);
+  const std::size_t n = snapshot.actors.size();
+  seen.assign(n, {});
+  const Cover cover = CastRays(snapshot, extra_pitch_rad, seen);
   const bool ideal = world_.scenario().sensors.mode == SensorMode::kIdealPoints;
   for (std::size_t i = 0; i < n; ++i) {
-    if (open[i] <= 0.0) continue;
+    if (cover.open[i] <= 0.0) continue;
     const ActorState& actor = snapshot.actors[i];
     const double range = (actor.motion.centre - origin).norm();
     Seen& result = seen[i];
-    result.sight.visible_fraction = open[i] / whole[i];
+    result.sight.visible_fraction = cover.open[i] / cover.whole[i];
     if (result.sight.visible_fraction > 0.98) {
-      // Nothing in front: the exact outline of the cuboid instead of the rays' steps, far roof
-      // edges included.
-      const auto corners = actor.box().Corners();
-      for (std::size_t k = 0; k < 4; ++k) {
-        for (int step = 0; step < 8; ++step) {
-          const Vec2 point = corners[k] + (corners[(k + 1) % 4] - corners[k]) * (step / 8.0);
-          for (const double z : {0.0, actor.actor->size.height_m}) {
-            const auto pixel = Project(camera_, ToBody(snapshot.ego, point, z), extra_pitch_rad);
-            if (pixel) result.box.Add(*pixel);
-          }
-        }
-      }
+      // Nothing in front: not the rays' steps.
+      AddOutline(snapshot.ego, actor, extra_pitch_rad, result.box);
     }
     const double in_picture_px =
         std::min(result.box.right, 1.0 * camera_.image_width_px) - std::max(result.box.left, 0.0);
@@ -176,13 +193,69 @@ void CameraSimulator::Look(const Snapshot& snapshot, std::vector<Sight>& sights)
   for (const Seen& seen : seen_) sights.push_back(seen.sight);
 }
 
+double CameraSimulator::sigma_px() const {
+  return world_.scenario().sensors.noise_scale * camera_.edge_sigma_px;
+}
+
+std::optional<camera_box_t> CameraSimulator::PointBox(const EgoTruth& ego, const ActorState& actor,
+                                                      double nod_rad, Random& random) const {
+  const auto foot = Project(camera_, ToBody(ego, actor.motion.centre, 0.0), nod_rad);
+  if (!foot) return std::nullopt;
+  camera_box_t box{};
+  box.left_px = foot->x() - 1.0 + random.Normal(0.0, sigma_px());
+  box.width_px = 2.0;
+  box.top_px = foot->y() - 2.0 + random.Normal(0.0, sigma_px());
+  box.height_px = 2.0;
+  box.score = 0.9;
+  SetClass(actor.actor->object_class, box);
+  return box;
+}
+
+std::optional<camera_box_t> CameraSimulator::VehicleBox(const Seen& seen, ObjectClass object_class,
+                                                        Random& random) const {
+  const double sigma = sigma_px();
+  const double width = camera_.image_width_px;
+  const double height = camera_.image_height_px;
+  camera_box_t box{};
+  const auto edge = [&](double exact, double low, double high) {
+    const double noise = random.Normal(0.0, sigma);  // Drawn always: order stays fixed.
+    if (exact <= low) return low;
+    if (exact >= high) return high;
+    return std::clamp(exact + noise, low, high);
+  };
+  box.left_px = edge(seen.box.left, 0.0, width);
+  box.top_px = edge(seen.box.top, 0.0, height);
+  box.width_px = edge(seen.box.right, 0.0, width) - box.left_px;
+  box.height_px = edge(seen.box.bottom, 0.0, height) - box.top_px;
+  const double size = std::clamp(box.height_px / 60.0, 0.0, 1.0);
+  box.score =
+      std::clamp(0.5 + 0.25 * size + 0.2 * seen.sight.visible_fraction + random.Normal(0.0, 0.05),
+                 std::min(0.99, camera_.min_score + 0.02), 0.99);
+  if (random.Bernoulli(0.03 + 0.07 * (1.0 - size))) object_class = Confused(object_class);
+  if (box.width_px < 3.0 || box.height_px < 4.0) return std::nullopt;
+  SetClass(object_class, box);
+  return box;
+}
+
+// Posters, shadows, bins: near the horizon, vehicle-shaped.
+camera_box_t CameraSimulator::ClutterBox(Random& random) const {
+  const double width = camera_.image_width_px;
+  const double height = camera_.image_height_px;
+  camera_box_t box{};
+  box.height_px = random.Uniform(12.0, 0.12 * height);
+  box.width_px = box.height_px * random.Uniform(0.8, 2.0);
+  box.left_px = random.Uniform(0.0, width - box.width_px);
+  box.top_px =
+      std::clamp(camera_.cy_px + random.Uniform(-0.05, 0.1) * height, 0.0, height - box.height_px);
+  box.score = std::min(0.99, camera_.min_score + random.Uniform(0.0, 0.3));
+  SetClass(ObjectClass::kCar, box);
+  return box;
+}
+
 void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
                             camera_detections_t& picture) {
   const SensorsSpec& sensors = world_.scenario().sensors;
   const bool ideal = sensors.mode == SensorMode::kIdealPoints;
-  const double sigma_px = sensors.noise_scale * camera_.edge_sigma_px;
-  const double width = camera_.image_width_px;
-  const double height = camera_.image_height_px;
   picture.seq = seq;
   picture.sensor = camera_.name;
   picture.image_width_px = camera_.image_width_px;
@@ -199,54 +272,15 @@ void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
     Random random = SubjectRandom(seed_, "camera vehicle",
                                   {index_, static_cast<std::uint64_t>(seq), actor.actor->id});
     if (!random.Bernoulli(seen.sight.detection_probability)) continue;
-    camera_box_t box{};
-    ObjectClass named = actor.actor->object_class;
-    if (ideal) {
-      const auto foot = Project(camera_, ToBody(snapshot.ego, actor.motion.centre, 0.0), nod);
-      if (!foot) continue;
-      box.left_px = foot->x() - 1.0 + random.Normal(0.0, sigma_px);
-      box.width_px = 2.0;
-      box.top_px = foot->y() - 2.0 + random.Normal(0.0, sigma_px);
-      box.height_px = 2.0;
-      box.score = 0.9;
-    } else {
-      const auto edge = [&](double exact, double low, double high) {
-        const double noise = random.Normal(0.0, sigma_px);  // Drawn always: order stays fixed.
-        if (exact <= low) return low;
-        if (exact >= high) return high;
-        return std::clamp(exact + noise, low, high);
-      };
-      box.left_px = edge(seen.box.left, 0.0, width);
-      box.top_px = edge(seen.box.top, 0.0, height);
-      box.width_px = edge(seen.box.right, 0.0, width) - box.left_px;
-      box.height_px = edge(seen.box.bottom, 0.0, height) - box.top_px;
-      const double size = std::clamp(box.height_px / 60.0, 0.0, 1.0);
-      box.score = std::clamp(
-          0.5 + 0.25 * size + 0.2 * seen.sight.visible_fraction + random.Normal(0.0, 0.05),
-          std::min(0.99, camera_.min_score + 0.02), 0.99);
-      if (random.Bernoulli(0.03 + 0.07 * (1.0 - size))) named = Confused(named);
-      if (box.width_px < 3.0 || box.height_px < 4.0) continue;
-    }
-    box.class_id = static_cast<std::int32_t>(named);
-    box.class_name = ObjectClassName(named);
-    picture.boxes.push_back(box);
+    const auto box = ideal ? PointBox(snapshot.ego, actor, nod, random)
+                           : VehicleBox(seen, actor.actor->object_class, random);
+    if (box) picture.boxes.push_back(*box);
   }
 
   if (!ideal) {
     const int count =
         common.Poisson(std::min(40.0, camera_.clutter_per_image * sensors.clutter_scale));
-    for (int i = 0; i < count; ++i) {  // Posters, shadows, bins: near the horizon, vehicle-shaped.
-      camera_box_t box{};
-      box.height_px = common.Uniform(12.0, 0.12 * height);
-      box.width_px = box.height_px * common.Uniform(0.8, 2.0);
-      box.left_px = common.Uniform(0.0, width - box.width_px);
-      box.top_px = std::clamp(camera_.cy_px + common.Uniform(-0.05, 0.1) * height, 0.0,
-                              height - box.height_px);
-      box.score = std::min(0.99, camera_.min_score + common.Uniform(0.0, 0.3));
-      box.class_id = static_cast<std::int32_t>(ObjectClass::kCar);
-      box.class_name = ObjectClassName(ObjectClass::kCar);
-      picture.boxes.push_back(box);
-    }
+    for (int i = 0; i < count; ++i) picture.boxes.push_back(ClutterBox(common));
   }
   if (sensors.outlier_share > 0.0) Spoil(seq, picture);
   picture.num_boxes = static_cast<std::int32_t>(picture.boxes.size());

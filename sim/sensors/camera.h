@@ -48,8 +48,22 @@ class CameraSimulator {
     Sight sight;
     PixelBox box;  ///< Of the visible part, not yet cut at the border.
   };
+  /// Tangents of elevation the rays met of each actor: all of it and what nothing nearer covers.
+  struct Cover {
+    std::vector<double> whole, open;
+  };
+  Cover CastRays(const Snapshot& snapshot, double extra_pitch_rad, std::vector<Seen>& seen);
+  void AddOutline(const EgoTruth& ego, const ActorState& actor, double extra_pitch_rad,
+                  PixelBox& box) const;
   void LookClosely(const Snapshot& snapshot, double extra_pitch_rad, std::vector<Seen>& seen);
   [[nodiscard]] Eigen::Vector3d ToBody(const EgoTruth& ego, const Vec2& point, double z_m) const;
+
+  [[nodiscard]] double sigma_px() const;
+  [[nodiscard]] std::optional<camera_box_t> PointBox(const EgoTruth& ego, const ActorState& actor,
+                                                     double nod_rad, Random& random) const;
+  [[nodiscard]] std::optional<camera_box_t> VehicleBox(const Seen& seen, ObjectClass object_class,
+                                                       Random& random) const;
+  [[nodiscard]] camera_box_t ClutterBox(Random& random) const;
 
   void Spoil(std::int64_t seq, camera_detections_t& picture) const;
 

@@ -45,16 +45,15 @@ struct Piece {
   double peak_curvature_per_m;  // 0 for a straight.
 };
 
-}  // namespace
-
-bool Path::Make(const std::vector<Waypoint>& waypoints, Path& path, std::string& problem) {
+// The straights and curves between the waypoints. @return false with `problem` said when they do
+// not fit.
+bool MakePieces(const std::vector<Waypoint>& waypoints, std::vector<Piece>& pieces,
+                double& first_yaw, std::string& problem) {
   if (waypoints.size() < 2) {
     problem = "a route needs two waypoints at least";
     return false;
   }
-  std::vector<Piece> pieces;
   double left_over = 0.0;  // Tangent length that the previous corner took from this straight.
-  double first_yaw = 0.0;
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
     const Vec2 leg = waypoints[i + 1].position - waypoints[i].position;
     if (leg.norm() < 0.1) {
@@ -89,7 +88,15 @@ bool Path::Make(const std::vector<Waypoint>& waypoints, Path& path, std::string&
     }
     left_over = tangent;
   }
+  return true;
+}
 
+}  // namespace
+
+bool Path::Make(const std::vector<Waypoint>& waypoints, Path& path, std::string& problem) {
+  std::vector<Piece> pieces;
+  double first_yaw = 0.0;
+  if (!MakePieces(waypoints, pieces, first_yaw, problem)) return false;
   path.points_.clear();
   path.length_m_ = 0.0;
   for (const Piece& piece : pieces) path.length_m_ += piece.length_m;

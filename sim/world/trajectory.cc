@@ -60,6 +60,57 @@ class SpeedLimit {
   std::vector<double> limit_;
 };
 
+// The driver: where the axle is along the path.
+class Driver {
+ public:
+  // @param front_m leading bumper ahead of the axle.
+  Driver(const Path& path, const DriveSpec& drive, double place, double front_m)
+      : place_(place), drive_(drive), limit_(path, drive), front_m_(front_m) {
+    speed_ = std::min(Wish(0.0), Allowed(0.0));
+  }
+
+  [[nodiscard]] double place_m() const { return place_; }
+  [[nodiscard]] double speed_mps() const { return speed_; }
+
+  void Step(double time, double step_s) {
+    const double wish = Wish(time);
+    const double allowed = Allowed(time);
+    // Wishes obey the driver's limits; bends and stops bind exactly.
+    const double wished = wish > speed_ ? std::min(wish, speed_ + drive_.accel_mps2 * step_s)
+                                        : std::max(wish, speed_ - drive_.decel_mps2 * step_s);
+    speed_ = std::min(wished, allowed);
+    place_ += speed_ * step_s;
+  }
+
+ private:
+  // Fastest speed that bends and the next stop allow here and now.
+  double Allowed(double time) {
+    while (next_stop_ < drive_.stops.size() &&
+           (time >= drive_.stops[next_stop_].until_s ||
+            drive_.stops[next_stop_].at_m - front_m_ < place_ - 0.5)) {
+      ++next_stop_;
+    }
+    if (next_stop_ == drive_.stops.size()) return limit_.At(place_);
+    const double left = drive_.stops[next_stop_].at_m - front_m_ - place_;
+    const double stopping = left <= 0.005 ? 0.0 : std::sqrt(2.0 * drive_.decel_mps2 * left);
+    return std::min(limit_.At(place_), stopping);
+  }
+  [[nodiscard]] double Wish(double time) const {
+    double wish = drive_.speed_mps;
+    for (const SpeedSpec& later : drive_.speeds) {
+      if (time >= later.from_s) wish = later.mps;
+    }
+    return wish;
+  }
+
+  double place_;
+  double speed_ = 0.0;
+  const DriveSpec& drive_;
+  SpeedLimit limit_;
+  double front_m_;
+  std::size_t next_stop_ = 0;
+};
+
 }  // namespace
 
 double LateralOffset(const DriveSpec& drive, double time_s) {
@@ -72,50 +123,20 @@ double LateralOffset(const DriveSpec& drive, double time_s) {
 
 Trajectory Trajectory::Drive(const Path& path, const DriveSpec& drive, double length_m,
                              double centre_ahead_m, double duration_s) {
-  // The driver: arc length of the axle every 10 ms, with a lead so that smoothing sees real motion
-  // on both sides of the run.
+  // Arc length of the axle every 10 ms, with a lead so that smoothing sees real motion on both
+  // sides of the run.
   constexpr int kLead = 50;
   const int steps = static_cast<int>(std::ceil(duration_s / kStep_s)) + 1;
   // Along the way driven: backwards the rear bumper leads, and the axle is ahead of the centre.
   const double centre_m = drive.reverse ? -centre_ahead_m : centre_ahead_m;
-  const double front_m = centre_m + 0.5 * length_m;  // Leading bumper ahead of the axle.
-  const SpeedLimit limit(path, drive);
+  Driver driver(path, drive, drive.start_m - centre_m, centre_m + 0.5 * length_m);
   std::vector<double> s(static_cast<std::size_t>(steps + 2 * kLead));
-  double place = drive.start_m - centre_m;
-  std::size_t next_stop = 0;
-  // Fastest speed that bends and the next stop allow here and now.
-  const auto allowed_at = [&](double time) {
-    while (next_stop < drive.stops.size() &&
-           (time >= drive.stops[next_stop].until_s ||
-            drive.stops[next_stop].at_m - front_m < place - 0.5)) {
-      ++next_stop;
-    }
-    if (next_stop == drive.stops.size()) return limit.At(place);
-    const double left = drive.stops[next_stop].at_m - front_m - place;
-    const double stopping = left <= 0.005 ? 0.0 : std::sqrt(2.0 * drive.decel_mps2 * left);
-    return std::min(limit.At(place), stopping);
-  };
-  const auto wish_at = [&](double time) {
-    double wish = drive.speed_mps;
-    for (const SpeedSpec& later : drive.speeds) {
-      if (time >= later.from_s) wish = later.mps;
-    }
-    return wish;
-  };
-  double speed = std::min(wish_at(0.0), allowed_at(0.0));
-  for (int i = 0; i < kLead; ++i) {
-    s[static_cast<std::size_t>(i)] = place + speed * (i - kLead) * kStep_s;  // Before the start.
+  for (int i = 0; i < kLead; ++i) {  // Before the start.
+    s[static_cast<std::size_t>(i)] = driver.place_m() + driver.speed_mps() * (i - kLead) * kStep_s;
   }
   for (int i = kLead; i < steps + 2 * kLead; ++i) {
-    const double time = (i - kLead) * kStep_s;
-    s[static_cast<std::size_t>(i)] = place;
-    const double wish = wish_at(time);
-    const double allowed = allowed_at(time);
-    // Wishes obey the driver's limits; bends and stops bind exactly.
-    const double wished = wish > speed ? std::min(wish, speed + drive.accel_mps2 * kStep_s)
-                                       : std::max(wish, speed - drive.decel_mps2 * kStep_s);
-    speed = std::min(wished, allowed);
-    place += speed * kStep_s;
+    s[static_cast<std::size_t>(i)] = driver.place_m();
+    driver.Step((i - kLead) * kStep_s, kStep_s);
   }
   // Two half-second averages: acceleration becomes continuous.
   s = Averaged(Averaged(s, kLead / 2), kLead / 2);

@@ -63,6 +63,77 @@ Rail MakeRail(const RailSpec& spec, const Path& path) {
   return rail;
 }
 
+Actor MakeParked(const ParkedSpec& spec, const ParkedSendersSpec& senders, std::uint64_t seed) {
+  Actor actor;
+  actor.id = spec.id;
+  actor.object_class = spec.object_class;
+  actor.size = UsualSize(spec.object_class);
+  actor.has_v2v = Random::ForSubject(seed, kSubjectParkedShare + spec.id).Bernoulli(senders.share);
+  actor.sender = senders.sender;
+  actor.trajectory = Trajectory::Stand({spec.x_m, spec.y_m}, spec.yaw_rad);
+  return actor;
+}
+
+Actor MakeRecorded(std::uint32_t id, const Recorded& vehicle, double v2v_share,
+                   std::uint64_t seed) {
+  Actor actor;
+  actor.id = id;
+  actor.object_class = vehicle.object_class;
+  actor.size = {vehicle.length_m, vehicle.width_m, UsualSize(vehicle.object_class).height_m};
+  actor.has_v2v = Random::ForSubject(seed, kSubjectV2vShare + id).Bernoulli(v2v_share);
+  actor.trajectory = Trajectory::Follow(vehicle.rows);
+  return actor;
+}
+
+// The vehicles of the trajectory file, by id.
+std::map<std::uint32_t, Recorded> LoadRecorded(const Scenario& scenario,
+                                               std::vector<std::string>& problems) {
+  std::map<std::uint32_t, Recorded> recorded;
+  if (!scenario.trajectories.empty()) {
+    const std::filesystem::path file(scenario.trajectories);
+    LoadTrajectories(file.is_absolute() ? file.string()
+                                        : (std::filesystem::path(scenario.folder) / file).string(),
+                     recorded, problems);
+  }
+  return recorded;
+}
+
+// Sorts by id. @return false when two vehicles share one.
+bool SortById(std::vector<Actor>& actors, std::vector<std::string>& problems) {
+  std::sort(actors.begin(), actors.end(),
+            [](const Actor& a, const Actor& b) { return a.id < b.id; });
+  for (std::size_t i = 1; i < actors.size(); ++i) {
+    if (actors[i].id == actors[i - 1].id) {
+      problems.push_back("vehicle id " + std::to_string(actors[i].id) + " is taken twice");
+      return false;
+    }
+  }
+  return true;
+}
+
+void DrawIdentityChanges(const BsmSpec& bsm, std::uint64_t seed, std::vector<Actor>& actors) {
+  for (Actor& actor : actors) {
+    if (bsm.identity_change_s + bsm.identity_change_spread_s <= 0.0) break;
+    if (actor.sender.identity_change_s > 0.0) continue;
+    const double lot = Random::ForSubject(seed, kSubjectIdentity + actor.id).Uniform();
+    actor.sender.identity_change_s = bsm.identity_change_s + lot * bsm.identity_change_spread_s;
+  }
+}
+
+std::vector<Vec2> MakePoles(const Scenario& scenario) {
+  std::vector<Vec2> poles;
+  for (const PoleSpec& pole : scenario.poles) poles.emplace_back(pole.x_m, pole.y_m);
+  for (const PoleRowSpec& row : scenario.pole_rows) {
+    const Vec2 from(row.from_x_m, row.from_y_m);
+    const Vec2 way = Vec2(row.to_x_m, row.to_y_m) - from;
+    const int spaces = std::max(1, static_cast<int>(std::lround(way.norm() / row.every_m)));
+    for (int i = 0; i <= spaces; ++i) {
+      poles.push_back(from + way * (static_cast<double>(i) / spaces));
+    }
+  }
+  return poles;
+}
+
 }  // namespace
 
 Vec2 EgoTruth::PointAt(double x_m, double y_m) const {
@@ -81,13 +152,7 @@ std::unique_ptr<World> World::Make(const Scenario& scenario, std::uint64_t seed,
   const std::size_t before = problems.size();
   std::unique_ptr<World> world(new World(scenario));
   const auto paths = MakePaths(scenario, problems);
-  std::map<std::uint32_t, Recorded> recorded;
-  if (!scenario.trajectories.empty()) {
-    const std::filesystem::path file(scenario.trajectories);
-    LoadTrajectories(file.is_absolute() ? file.string()
-                                        : (std::filesystem::path(scenario.folder) / file).string(),
-                     recorded, problems);
-  }
+  const auto recorded = LoadRecorded(scenario, problems);
   const std::uint32_t ego_id = scenario.ego.trajectory_id;
   if (ego_id != 0 && !recorded.contains(ego_id)) {
     problems.push_back("ego.trajectory_id: no vehicle " + std::to_string(ego_id) + " in " +
@@ -107,56 +172,21 @@ std::unique_ptr<World> World::Make(const Scenario& scenario, std::uint64_t seed,
     world->actors_.push_back(MakeDriven(spec, paths.at(spec.drive.route), duration));
   }
   for (const ParkedSpec& spec : scenario.parked) {
-    Actor actor;
-    actor.id = spec.id;
-    actor.object_class = spec.object_class;
-    actor.size = UsualSize(spec.object_class);
-    actor.has_v2v = Random::ForSubject(seed, kSubjectParkedShare + spec.id)
-                        .Bernoulli(scenario.parked_senders.share);
-    actor.sender = scenario.parked_senders.sender;
-    actor.trajectory = Trajectory::Stand({spec.x_m, spec.y_m}, spec.yaw_rad);
-    world->actors_.push_back(actor);
+    world->actors_.push_back(MakeParked(spec, scenario.parked_senders, seed));
   }
   for (const auto& [id, vehicle] : recorded) {
     if (id == ego_id) continue;
-    Actor actor;
-    actor.id = id;
-    actor.object_class = vehicle.object_class;
-    actor.size = {vehicle.length_m, vehicle.width_m, UsualSize(vehicle.object_class).height_m};
-    actor.has_v2v = Random::ForSubject(seed, kSubjectV2vShare + id).Bernoulli(scenario.v2v_share);
-    actor.trajectory = Trajectory::Follow(vehicle.rows);
-    world->actors_.push_back(actor);
+    world->actors_.push_back(MakeRecorded(id, vehicle, scenario.v2v_share, seed));
   }
   if (!AddTraffic(scenario, paths, world->ego_, duration, seed, world->actors_, problems)) {
     return nullptr;
   }
-  std::sort(world->actors_.begin(), world->actors_.end(),
-            [](const Actor& a, const Actor& b) { return a.id < b.id; });
-  for (std::size_t i = 1; i < world->actors_.size(); ++i) {
-    if (world->actors_[i].id == world->actors_[i - 1].id) {
-      problems.push_back("vehicle id " + std::to_string(world->actors_[i].id) + " is taken twice");
-      return nullptr;
-    }
-  }
-  const BsmSpec& bsm = scenario.bsm;
-  for (Actor& actor : world->actors_) {
-    if (bsm.identity_change_s + bsm.identity_change_spread_s <= 0.0) break;
-    if (actor.sender.identity_change_s > 0.0) continue;
-    const double lot = Random::ForSubject(seed, kSubjectIdentity + actor.id).Uniform();
-    actor.sender.identity_change_s = bsm.identity_change_s + lot * bsm.identity_change_spread_s;
-  }
+  if (!SortById(world->actors_, problems)) return nullptr;
+  DrawIdentityChanges(scenario.bsm, seed, world->actors_);
   for (const BuildingSpec& building : scenario.buildings) {
     world->walls_.push_back(MakeWall(building));
   }
-  for (const PoleSpec& pole : scenario.poles) world->poles_.emplace_back(pole.x_m, pole.y_m);
-  for (const PoleRowSpec& row : scenario.pole_rows) {
-    const Vec2 from(row.from_x_m, row.from_y_m);
-    const Vec2 way = Vec2(row.to_x_m, row.to_y_m) - from;
-    const int spaces = std::max(1, static_cast<int>(std::lround(way.norm() / row.every_m)));
-    for (int i = 0; i <= spaces; ++i) {
-      world->poles_.push_back(from + way * (static_cast<double>(i) / spaces));
-    }
-  }
+  world->poles_ = MakePoles(scenario);
   for (const RailSpec& rail : scenario.rails) {
     world->rails_.push_back(MakeRail(rail, paths.at(rail.route)));
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <span>
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/models/dual.h"
@@ -17,30 +18,23 @@ constexpr double kContactSigma_m = 0.2;
 // An edge whose partner is cut by the picture's border is trusted this much less.
 constexpr double kLoneEdgeFactor = 2.0;
 
+using D = Dual<kStateSize + 2>;
+
 // One row: value, derivatives by state and extent, and variance.
 struct Row {
   double innovation;
-  Dual<kStateSize + 2> prediction;
+  D prediction;
   double variance;
 };
 
-}  // namespace
+// Bearings of the silhouette's edges and distance of its nearest point along the axis, axes of C.
+struct Silhouette {
+  D left, right, depth;
+};
 
-std::optional<Linearized> LinearizeCamera(const StateVector& x, const Extent& extent,
-                                          const EgoState& ego, const CameraConfig& camera,
-                                          const CameraMeasurement& measurement) {
-  using D = Dual<kStateSize + 2>;
-  const Pose<Odometry, Camera> X_OC =
-      ego.X_OB * Pose<Body, Camera>(camera.x_m, camera.y_m, camera.yaw_rad);
-  const double cos_c = std::cos(X_OC.yaw_rad());
-  const double sin_c = std::sin(X_OC.yaw_rad());
-  const D px = D::Variable(x[kX] - X_OC.x_m(), kX);
-  const D py = D::Variable(x[kY] - X_OC.y_m(), kY);
-  const D yaw = D::Variable(x[kYaw] - X_OC.yaw_rad(), kYaw);
-  const D centre_x = cos_c * px + sin_c * py;
-  const D centre_y = cos_c * py - sin_c * px;
-
-  const bool is_point = extent.length_m < kPoint_m || extent.width_m < kPoint_m;
+// nullopt when a part of the vehicle is beside or behind the camera.
+std::optional<Silhouette> SilhouetteOf(const D& centre_x, const D& centre_y, const D& yaw,
+                                       const Extent& extent, bool is_point) {
   D left = atan2(centre_y, centre_x);
   D right = left;
   D depth = centre_x;
@@ -64,6 +58,48 @@ std::optional<Linearized> LinearizeCamera(const StateVector& x, const Extent& ex
       }
     }
   }
+  return Silhouette{left, right, depth};
+}
+
+Linearized Stack(std::span<const Row> rows, const Extent& extent) {
+  Linearized out;
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  out.y.resize(size);
+  out.H.resize(size, Eigen::NoChange);
+  out.E.resize(size, Eigen::NoChange);
+  out.R.setZero(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Row& row = rows[static_cast<std::size_t>(i)];
+    out.y[i] = row.innovation;
+    out.H.row(i) = row.prediction.gradient.head<kStateSize>();
+    out.E.row(i) = row.prediction.gradient.tail<2>();
+    out.R(i, i) = row.variance;
+  }
+  const Eigen::Vector2d extent_variance(extent.length_sigma_m * extent.length_sigma_m,
+                                        extent.width_sigma_m * extent.width_sigma_m);
+  out.R += out.E * extent_variance.asDiagonal() * out.E.transpose();
+  return out;
+}
+
+}  // namespace
+
+std::optional<Linearized> LinearizeCamera(const StateVector& x, const Extent& extent,
+                                          const EgoState& ego, const CameraConfig& camera,
+                                          const CameraMeasurement& measurement) {
+  const Pose<Odometry, Camera> X_OC =
+      ego.X_OB * Pose<Body, Camera>(camera.x_m, camera.y_m, camera.yaw_rad);
+  const double cos_c = std::cos(X_OC.yaw_rad());
+  const double sin_c = std::sin(X_OC.yaw_rad());
+  const D px = D::Variable(x[kX] - X_OC.x_m(), kX);
+  const D py = D::Variable(x[kY] - X_OC.y_m(), kY);
+  const D yaw = D::Variable(x[kYaw] - X_OC.yaw_rad(), kYaw);
+  const D centre_x = cos_c * px + sin_c * py;
+  const D centre_y = cos_c * py - sin_c * px;
+
+  const bool is_point = extent.length_m < kPoint_m || extent.width_m < kPoint_m;
+  const auto silhouette = SilhouetteOf(centre_x, centre_y, yaw, extent, is_point);
+  if (!silhouette) return std::nullopt;
+  const auto& [left, right, depth] = *silhouette;
 
   std::array<Row, 3> rows;
   std::size_t count = 0;
@@ -97,24 +133,7 @@ std::optional<Linearized> LinearizeCamera(const StateVector& x, const Extent& ex
         measurement.depression_sigma_rad * measurement.depression_sigma_rad + contact * contact};
   }
   if (count == 0) return std::nullopt;
-
-  Linearized out;
-  const auto size = static_cast<Eigen::Index>(count);
-  out.y.resize(size);
-  out.H.resize(size, Eigen::NoChange);
-  out.E.resize(size, Eigen::NoChange);
-  out.R.setZero(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const Row& row = rows[static_cast<std::size_t>(i)];
-    out.y[i] = row.innovation;
-    out.H.row(i) = row.prediction.gradient.head<kStateSize>();
-    out.E.row(i) = row.prediction.gradient.tail<2>();
-    out.R(i, i) = row.variance;
-  }
-  const Eigen::Vector2d extent_variance(extent.length_sigma_m * extent.length_sigma_m,
-                                        extent.width_sigma_m * extent.width_sigma_m);
-  out.R += out.E * extent_variance.asDiagonal() * out.E.transpose();
-  return out;
+  return Stack(std::span(rows).first(count), extent);
 }
 
 }  // namespace v2vouch

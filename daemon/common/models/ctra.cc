@@ -102,6 +102,25 @@ void Forget(KinematicState& state, double rest_s, StateMatrix* transition) {
   if (transition != nullptr) *transition = phi.asDiagonal() * *transition;
 }
 
+// How a vehicle turns: angle turned per unit of s w after time t, with s the mobility.
+struct Turning {
+  double s, ds;        // Mobility, and its derivative by speed.
+  double rate, drate;  // Decay rate, likewise.
+
+  Turning(double v, const MotionNoise& noise) {
+    s = Mobility(v);
+    const double floor = kStandstill_mps * kStandstill_mps;
+    ds = 2.0 * v * floor / ((v * v + floor) * (v * v + floor));
+    rate = 1.0 / noise.yaw_rate_decay_s + (1.0 - s) / kStandstillDecay_s;
+    drate = -ds / kStandstillDecay_s;
+  }
+  [[nodiscard]] double Turned(double t) const { return -std::expm1(-rate * t) / rate; }
+  /// Derivative by the decay rate.
+  [[nodiscard]] double DTurned(double t) const {
+    return (t * std::exp(-rate * t) - Turned(t)) / rate;
+  }
+};
+
 }  // namespace
 
 StateVector CtraStep(const StateVector& x, double dt_s, const MotionNoise& noise,
@@ -109,17 +128,8 @@ StateVector CtraStep(const StateVector& x, double dt_s, const MotionNoise& noise
   const double v = x[kSpeed];
   const double w = x[kYawRate];
   const double a = x[kAccel];
-  const double s = Mobility(v);
-  const double floor = kStandstill_mps * kStandstill_mps;
-  const double ds = 2.0 * v * floor / ((v * v + floor) * (v * v + floor));
-  const double rate = 1.0 / noise.yaw_rate_decay_s + (1.0 - s) / kStandstillDecay_s;
-  const double drate = -ds / kStandstillDecay_s;
-
-  // Angle turned per unit of s w after time t, and its derivative by the decay rate.
-  const auto turned = [rate](double t) { return -std::expm1(-rate * t) / rate; };
-  const auto dturned = [rate, &turned](double t) {
-    return (t * std::exp(-rate * t) - turned(t)) / rate;
-  };
+  const Turning turning(v, noise);
+  const double s = turning.s;
   // Speed gained per unit of acceleration after time t.
   const auto gained = [&noise](double t) {
     return -std::expm1(-t / noise.accel_decay_s) * noise.accel_decay_s;
@@ -130,7 +140,7 @@ StateVector CtraStep(const StateVector& x, double dt_s, const MotionNoise& noise
   for (std::size_t i = 0; i < kNode.size(); ++i) {
     const double t = kNode[i] * dt_s;
     const double weight = kWeight[i] * dt_s;
-    const double e = turned(t);
+    const double e = turning.Turned(t);
     const double g = gained(t);
     const double yaw = x[kYaw] + s * w * e;
     const double c = std::cos(yaw);
@@ -140,7 +150,7 @@ StateVector CtraStep(const StateVector& x, double dt_s, const MotionNoise& noise
     next[kY] += weight * speed * n;
     if (jacobian == nullptr) continue;
     StateMatrix& F = *jacobian;
-    const double dyaw_dv = w * (ds * e + s * dturned(t) * drate);
+    const double dyaw_dv = w * (turning.ds * e + s * turning.DTurned(t) * turning.drate);
     const double dyaw_dw = s * e;
     F(kX, kYaw) -= weight * speed * n;
     F(kY, kYaw) += weight * speed * c;
@@ -151,20 +161,20 @@ StateVector CtraStep(const StateVector& x, double dt_s, const MotionNoise& noise
     F(kX, kAccel) += weight * g * c;
     F(kY, kAccel) += weight * g * n;
   }
-  const double e = turned(dt_s);
+  const double e = turning.Turned(dt_s);
   const double g = gained(dt_s);
-  const double kept = std::exp(-rate * dt_s);
+  const double kept = std::exp(-turning.rate * dt_s);
   next[kYaw] = x[kYaw] + s * w * e;
   next[kSpeed] = v + a * g;
   next[kYawRate] = w * kept;
   next[kAccel] = a * std::exp(-dt_s / noise.accel_decay_s);
   if (jacobian != nullptr) {
     StateMatrix& F = *jacobian;
-    F(kYaw, kSpeed) = w * (ds * e + s * dturned(dt_s) * drate);
+    F(kYaw, kSpeed) = w * (turning.ds * e + s * turning.DTurned(dt_s) * turning.drate);
     F(kYaw, kYawRate) = s * e;
     F(kSpeed, kAccel) = g;
     F(kYawRate, kYawRate) = kept;
-    F(kYawRate, kSpeed) = -w * dt_s * drate * kept;
+    F(kYawRate, kSpeed) = -w * dt_s * turning.drate * kept;
     F(kAccel, kAccel) = std::exp(-dt_s / noise.accel_decay_s);
   }
   return next;

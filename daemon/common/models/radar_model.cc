@@ -66,6 +66,122 @@ std::optional<D> NearEnd(const D& px, const D& py, const D& c, const D& s, const
   return past.value > 0.0 ? sqrt(gap * gap + past * past) : gap;
 }
 
+// Where the vehicle is from the antenna, axes of O, and its heading.
+struct Bearing {
+  D px, py, distance;
+  D yaw, c, s;
+};
+
+// Mean of the reflections from the centre, axes of O, and their spread.
+struct Mean {
+  D ox{0.0}, oy{0.0};
+  Eigen::Matrix2d spread_O = Eigen::Matrix2d::Zero();
+  bool is_cut = false;  // By an edge of the field of view, which the mean allows for.
+};
+
+Mean MeanOfReflections(const Bearing& b, const RadarConfig& radar, double sensor_yaw_rad,
+                       const Extent& extent) {
+  Mean mean;
+  const D length = D::Variable(extent.length_m, kStateSize);
+  const D width = D::Variable(extent.width_m, kStateSize + 1);
+  const D ax = -(b.c * b.px + b.s * b.py) / b.distance;
+  const D ay = (b.s * b.px - b.c * b.py) / b.distance;
+  ReflectingBox<D> box(ax, ay, b.distance, length, width);
+  const auto whole = box.Reflect();
+  const bool is_near_an_edge = CutByView(radar, sensor_yaw_rad, b.yaw, b.px, b.py, extent, box);
+  const auto cut = is_near_an_edge ? box.Reflect() : whole;
+  mean.is_cut = cut && cut->spread != whole->spread;
+  const Reflections<D>& seen = cut ? *cut : *whole;
+  mean.ox = b.c * seen.along - b.s * seen.across;
+  mean.oy = b.s * seen.along + b.c * seen.across;
+  Eigen::Matrix2d R_OT;
+  R_OT << b.c.value, -b.s.value, b.s.value, b.c.value;
+  mean.spread_O = R_OT * seen.spread * R_OT.transpose();
+  return mean;
+}
+
+struct Prediction {
+  D range, azimuth_O, range_rate;
+  std::optional<D> near_end;
+};
+
+// Innovation and Jacobians; without noise.
+Linearized Innovate(const Prediction& predicted, double sensor_yaw_rad, const RadarConfig& radar,
+                    const RadarMeasurement& measurement) {
+  const auto& near_end = predicted.near_end;
+  Linearized out;
+  out.y.resize(3);
+  out.H.resize(3, Eigen::NoChange);
+  out.E.resize(3, Eigen::NoChange);
+  const D* const rows[3] = {near_end ? &*near_end : &predicted.range, &predicted.azimuth_O,
+                            &predicted.range_rate};
+  for (int i = 0; i < 3; ++i) {
+    out.H.row(i) = rows[i]->gradient.head<kStateSize>();
+    out.E.row(i) = rows[i]->gradient.tail<2>();
+  }
+  out.y[0] = measurement.range_m - predicted.range.value;
+  if (near_end) {
+    // The nearest of a few reflections lies before the face by what noise does to it.
+    const double few = 0.5 * (1.0 + std::max(measurement.returns, 1));
+    const double early_m = radar.range_sigma_m * std::sqrt(0.6 * std::log(few));
+    out.y[0] = measurement.near_range_m + early_m - near_end->value;
+  }
+  out.y[1] = WrapAngle(measurement.azimuth_rad + sensor_yaw_rad - predicted.azimuth_O.value);
+  out.y[2] = measurement.range_rate_mps - predicted.range_rate.value;
+  return out;
+}
+
+// The reflections' mean from the antenna.
+struct Line {
+  Eigen::Vector2d along, across;  // Unit vectors.
+  double range_m;
+  Eigen::Vector2d velocity_O;
+  double yaw_rate_radps;
+};
+
+// What the reflections' scatter over the body adds to the measurement's own covariance.
+void AddScatter(const Mean& reflections, const Line& line, const RadarConfig& radar,
+                const RadarMeasurement& measurement, Eigen::Matrix3d& R) {
+  const Eigen::Vector2d& across = line.across;
+  const Eigen::Matrix2d& spread_O = reflections.spread_O;
+  Eigen::Matrix<double, 3, 2> G;  // d(range, azimuth, range rate)/d(reflection point)
+  G.row(0) = line.along.transpose();
+  G.row(1) = across.transpose() / line.range_m;
+  // A point to the left of the line moves towards or away by the vehicle's yaw rate, and the line
+  // to it takes another share of the velocity: a passing car's nose comes while its tail goes.
+  const double passing_mps = across.dot(line.velocity_O);
+  G.row(2) = (passing_mps / line.range_m - line.yaw_rate_radps) * across.transpose();
+  const Eigen::Matrix3d spread = G * spread_O * G.transpose();
+  const double n = std::max(measurement.returns, 1);
+  const Eigen::Array3d sensor(radar.range_sigma_m, radar.azimuth_sigma_rad,
+                              radar.range_rate_sigma_mps);
+  // What a sample mean of n reflections scatters by. The measurement's own covariance may hold
+  // the scatter already, as far as the sample shows it: the larger counts. A sensor that tracks
+  // by itself has averaged already.
+  Eigen::Matrix3d mean = measurement.is_object ? Eigen::Matrix3d(spread * kLastingSpread)
+                                               : Eigen::Matrix3d(spread / n);
+  const Eigen::Array3d given = measurement.covariance.diagonal().array();
+  mean.diagonal().array() += given.min(sensor.square() / n);
+  R.diagonal().setZero();
+  R += mean + kLastingSpread * spread;
+  // With a part unseen the rest's mean is displaced.
+  const double unseen =
+      reflections.is_cut ? 0.0 : std::clamp(1.0 - measurement.visible_share, 0.0, 1.0);
+  R += kUnseenLooks * unseen * unseen * spread;
+  // The yaw rate is not known that well: off-centre points move by what is wrong with it.
+  R(2, 2) += kYawRateDoubt_radps * kYawRateDoubt_radps * across.dot(spread_O * across) / n;
+  const Eigen::Array3d missing = given - mean.diagonal().array();
+  R.diagonal().array() += missing.max(0.0);
+}
+
+// The ego's own motion is measured too: its noise reaches every range rate.
+double EgoMotionVariance(const EgoState& ego, const RadarConfig& radar,
+                         const Eigen::Vector2d& line_B) {
+  const double lever = line_B.y() * radar.x_m - line_B.x() * radar.y_m;
+  return std::pow(line_B.x() * ego.speed_sigma_mps, 2) +
+         std::pow(lever * ego.yaw_rate_sigma_radps, 2);
+}
+
 }  // namespace
 
 Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, double yaw_rad,
@@ -106,91 +222,26 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
   const D yaw_rate = D::Variable(x[kYawRate], kYawRate);
   const D distance = sqrt(px * px + py * py);
   if (!(distance.value > kMinRange_m)) return std::nullopt;
-  const D c = cos(yaw);
-  const D s = sin(yaw);
+  const Bearing bearing{px, py, distance, yaw, cos(yaw), sin(yaw)};
 
-  D ox(0.0), oy(0.0);  // Offset of the reflections' mean from the centre, axes of O.
-  Eigen::Matrix2d spread_O = Eigen::Matrix2d::Zero();
   const bool is_point = IsPoint(extent.length_m, extent.width_m);
-  bool is_cut = false;  // By an edge of the field of view, which the mean allows for.
-  if (!is_point) {
-    const D length = D::Variable(extent.length_m, kStateSize);
-    const D width = D::Variable(extent.width_m, kStateSize + 1);
-    const D ax = -(c * px + s * py) / distance;
-    const D ay = (s * px - c * py) / distance;
-    ReflectingBox<D> box(ax, ay, distance, length, width);
-    const auto whole = box.Reflect();
-    const bool is_near_an_edge = CutByView(radar, X_OR.yaw_rad(), yaw, px, py, extent, box);
-    const auto cut = is_near_an_edge ? box.Reflect() : whole;
-    is_cut = cut && cut->spread != whole->spread;
-    const Reflections<D>& seen = cut ? *cut : *whole;
-    ox = c * seen.along - s * seen.across;
-    oy = s * seen.along + c * seen.across;
-    Eigen::Matrix2d R_OT;
-    R_OT << c.value, -s.value, s.value, c.value;
-    spread_O = R_OT * seen.spread * R_OT.transpose();
-  }
-  const D qx = px + ox;
-  const D qy = py + oy;
+  const Mean mean = is_point ? Mean{} : MeanOfReflections(bearing, radar, X_OR.yaw_rad(), extent);
+  const D qx = px + mean.ox;
+  const D qy = py + mean.oy;
   const D range = sqrt(qx * qx + qy * qy);
   if (!(range.value > kMinRange_m)) return std::nullopt;
   // Every point of a turning vehicle moves with its centre plus yaw rate x offset.
-  const D vx = speed * c - yaw_rate * oy - D(v_R_O.x());
-  const D vy = speed * s + yaw_rate * ox - D(v_R_O.y());
+  const D vx = speed * bearing.c - yaw_rate * mean.oy - D(v_R_O.x());
+  const D vy = speed * bearing.s + yaw_rate * mean.ox - D(v_R_O.y());
   const D range_rate = (qx * vx + qy * vy) / range;
-  const auto near_end = NearEnd(px, py, c, s, extent);
-  const D azimuth_O = atan2(qy, qx);
-
-  Linearized out;
-  out.y.resize(3);
-  out.H.resize(3, Eigen::NoChange);
-  out.E.resize(3, Eigen::NoChange);
-  const D* const rows[3] = {near_end ? &*near_end : &range, &azimuth_O, &range_rate};
-  for (int i = 0; i < 3; ++i) {
-    out.H.row(i) = rows[i]->gradient.head<kStateSize>();
-    out.E.row(i) = rows[i]->gradient.tail<2>();
-  }
-  out.y[0] = measurement.range_m - range.value;
-  if (near_end) {
-    // The nearest of a few reflections lies before the face by what noise does to it.
-    const double few = 0.5 * (1.0 + std::max(measurement.returns, 1));
-    const double early_m = radar.range_sigma_m * std::sqrt(0.6 * std::log(few));
-    out.y[0] = measurement.near_range_m + early_m - near_end->value;
-  }
-  out.y[1] = WrapAngle(measurement.azimuth_rad + X_OR.yaw_rad() - azimuth_O.value);
-  out.y[2] = measurement.range_rate_mps - range_rate.value;
-
+  const auto near_end = NearEnd(px, py, bearing.c, bearing.s, extent);
+  Linearized out =
+      Innovate({range, atan2(qy, qx), range_rate, near_end}, X_OR.yaw_rad(), radar, measurement);
   Eigen::Matrix3d R = measurement.covariance;
-  const Eigen::Vector2d line(qx.value / range.value, qy.value / range.value);
-  const Eigen::Vector2d across(-line.y(), line.x());
+  const Eigen::Vector2d along(qx.value / range.value, qy.value / range.value);
   if (!is_point) {
-    Eigen::Matrix<double, 3, 2> G;  // d(range, azimuth, range rate)/d(reflection point)
-    G.row(0) = line.transpose();
-    G.row(1) = across.transpose() / range.value;
-    // A point to the left of the line moves towards or away by the vehicle's yaw rate, and the line
-    // to it takes another share of the velocity: a passing car's nose comes while its tail goes.
-    const double passing_mps = across.dot(Eigen::Vector2d(vx.value, vy.value));
-    G.row(2) = (passing_mps / range.value - x[kYawRate]) * across.transpose();
-    const Eigen::Matrix3d spread = G * spread_O * G.transpose();
-    const double n = std::max(measurement.returns, 1);
-    const Eigen::Array3d sensor(radar.range_sigma_m, radar.azimuth_sigma_rad,
-                                radar.range_rate_sigma_mps);
-    // What a sample mean of n reflections scatters by. The measurement's own covariance may hold
-    // the scatter already, as far as the sample shows it: the larger counts. A sensor that tracks
-    // by itself has averaged already.
-    Eigen::Matrix3d mean = measurement.is_object ? Eigen::Matrix3d(spread * kLastingSpread)
-                                                 : Eigen::Matrix3d(spread / n);
-    const Eigen::Array3d given = measurement.covariance.diagonal().array();
-    mean.diagonal().array() += given.min(sensor.square() / n);
-    R.diagonal().setZero();
-    R += mean + kLastingSpread * spread;
-    // With a part unseen the rest's mean is displaced.
-    const double unseen = is_cut ? 0.0 : std::clamp(1.0 - measurement.visible_share, 0.0, 1.0);
-    R += kUnseenLooks * unseen * unseen * spread;
-    // The yaw rate is not known that well: off-centre points move by what is wrong with it.
-    R(2, 2) += kYawRateDoubt_radps * kYawRateDoubt_radps * across.dot(spread_O * across) / n;
-    const Eigen::Array3d missing = given - mean.diagonal().array();
-    R.diagonal().array() += missing.max(0.0);
+    const Line line{along, {-along.y(), along.x()}, range.value, {vx.value, vy.value}, x[kYawRate]};
+    AddScatter(mean, line, radar, measurement, R);
     if (near_end) {
       // It has no part in the scatter of the others.
       R.row(0).setZero();
@@ -198,11 +249,7 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
       R(0, 0) = radar.range_sigma_m * radar.range_sigma_m + kEndSigma_m * kEndSigma_m;
     }
   }
-  // The ego's own motion is measured too: its noise reaches every range rate.
-  const Eigen::Vector2d line_B = R_OB.transpose() * line;
-  const double lever = line_B.y() * radar.x_m - line_B.x() * radar.y_m;
-  R(2, 2) +=
-      std::pow(line_B.x() * ego.speed_sigma_mps, 2) + std::pow(lever * ego.yaw_rate_sigma_radps, 2);
+  R(2, 2) += EgoMotionVariance(ego, radar, R_OB.transpose() * along);
   out.R = R;
   const Eigen::Vector2d extent_variance(extent.length_sigma_m * extent.length_sigma_m,
                                         extent.width_sigma_m * extent.width_sigma_m);

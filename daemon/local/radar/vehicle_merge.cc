@@ -19,6 +19,35 @@ constexpr double kMostSpeed_mps = kMostRoadSpeed_mps;
 constexpr std::size_t kMostPairs = 8192;
 constexpr double kNoiseAllowed = 2.0;  // Sigmas; 3 joins twice as many cars driving side by side.
 
+struct Sightline {
+  Eigen::Vector2d line, beside;  // Unit vectors along and across.
+  double range_m;
+};
+
+// Whether the reflections, seen along their course, spread no wider than one vehicle.
+template <class ForEach>
+bool HasSizeOfOne(const VehicleShape& shape, const Sightline& sight,
+                  const Eigen::Vector2d& velocity, const ForEach& for_each) {
+  const auto& [line, beside, range_m] = sight;
+  const Eigen::Vector2d course =
+      (velocity.x() * line + velocity.y() * beside) / std::max(velocity.norm(), 1e-6);
+  const Eigen::Vector2d flank(-course.y(), course.x());
+  Eigen::Array2d low(1e9, 1e9);
+  Eigen::Array2d high(-1e9, -1e9);
+  for_each([&](const Reflection& r) {
+    const Eigen::Vector2d p(r.x_m, r.y_m);
+    const Eigen::Array2d q(p.dot(course), p.dot(flank));
+    low = low.min(q);
+    high = high.max(q);
+  });
+  const auto noise = [&shape, &sight](const Eigen::Vector2d& axis) {
+    return std::hypot(shape.range_sigma_m * axis.dot(sight.line),
+                      shape.azimuth_sigma_rad * sight.range_m * axis.dot(sight.beside));
+  };
+  const Eigen::Array2d size = high - low;
+  return size.x() <= shape.length_m + kNoiseAllowed * noise(course) &&
+         size.y() <= shape.width_m + kNoiseAllowed * noise(flank);
+}
 }  // namespace
 
 int VehicleMerge::Root(int cluster) {
@@ -71,46 +100,13 @@ bool VehicleMerge::IsOneVehicle(std::span<const Reflection> reflections, const V
   const double freedom = count - 1;
   if (chi2 > freedom + 3.0 * std::sqrt(2.0 * freedom)) return false;
 
-  const Eigen::Vector2d course =
-      (velocity.x() * line + velocity.y() * beside) / std::max(velocity.norm(), 1e-6);
-  const Eigen::Vector2d flank(-course.y(), course.x());
-  Eigen::Array2d low(1e9, 1e9);
-  Eigen::Array2d high(-1e9, -1e9);
-  for_each([&](const Reflection& r) {
-    const Eigen::Vector2d p(r.x_m, r.y_m);
-    const Eigen::Array2d q(p.dot(course), p.dot(flank));
-    low = low.min(q);
-    high = high.max(q);
-  });
-  const auto noise = [&](const Eigen::Vector2d& axis) {
-    return std::hypot(shape.range_sigma_m * axis.dot(line),
-                      shape.azimuth_sigma_rad * range_m * axis.dot(beside));
-  };
-  const Eigen::Array2d size = high - low;
-  return size.x() <= shape.length_m + kNoiseAllowed * noise(course) &&
-         size.y() <= shape.width_m + kNoiseAllowed * noise(flank);
+  return HasSizeOfOne(shape, {line, beside, range_m}, velocity, for_each);
 }
 
-void VehicleMerge::Run(std::span<const Reflection> reflections, const VehicleShape& shape,
-                       std::vector<int>& members, std::vector<std::size_t>& ends) {
-  const std::size_t clusters = ends.size();
-  content_.resize(std::max(content_.size(), clusters));
-  parent_.resize(clusters);
-  cluster_of_.assign(reflections.size(), -1);
-  std::size_t from = 0;
-  for (std::size_t i = 0; i < clusters; ++i) {
-    parent_[i] = static_cast<int>(i);
-    content_[i].assign(members.begin() + static_cast<std::ptrdiff_t>(from),
-                       members.begin() + static_cast<std::ptrdiff_t>(ends[i]));
-    for (const int member : content_[i]) {
-      const auto m = static_cast<std::size_t>(member);
-      if (!reflections[m].is_standing) cluster_of_[m] = static_cast<int>(i);
-    }
-    from = ends[i];
-  }
-
-  // Pairs of moving clusters within reach, by the distance of their nearest reflections. The
-  // reflections are in order of range, so the inner loop ends early.
+// Pairs of moving clusters within reach, by the distance of their nearest reflections. The
+// reflections are in order of range, so the inner loop ends early.
+void VehicleMerge::CollectEdges(std::span<const Reflection> reflections,
+                                const VehicleShape& shape) {
   edges_.clear();
   for (std::size_t i = 0; i < reflections.size() && edges_.size() < kMostPairs; ++i) {
     if (cluster_of_[i] < 0) continue;
@@ -143,6 +139,26 @@ void VehicleMerge::Run(std::span<const Reflection> reflections, const VehicleSha
   std::sort(edges_.begin(), edges_.end(), [](const Edge& x, const Edge& y) {
     return std::tie(x.gap2, x.a, x.b) < std::tie(y.gap2, y.a, y.b);
   });
+}
+void VehicleMerge::Run(std::span<const Reflection> reflections, const VehicleShape& shape,
+                       std::vector<int>& members, std::vector<std::size_t>& ends) {
+  const std::size_t clusters = ends.size();
+  content_.resize(std::max(content_.size(), clusters));
+  parent_.resize(clusters);
+  cluster_of_.assign(reflections.size(), -1);
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < clusters; ++i) {
+    parent_[i] = static_cast<int>(i);
+    content_[i].assign(members.begin() + static_cast<std::ptrdiff_t>(from),
+                       members.begin() + static_cast<std::ptrdiff_t>(ends[i]));
+    for (const int member : content_[i]) {
+      const auto m = static_cast<std::size_t>(member);
+      if (!reflections[m].is_standing) cluster_of_[m] = static_cast<int>(i);
+    }
+    from = ends[i];
+  }
+
+  CollectEdges(reflections, shape);
 
   for (const Edge& edge : edges_) {
     const int a = std::min(Root(edge.a), Root(edge.b));

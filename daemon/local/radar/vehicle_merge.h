@@ -46,6 +46,7 @@ class VehicleMerge {
     int b = 0;
   };
   int Root(int cluster);
+  void CollectEdges(std::span<const Reflection> reflections, const VehicleShape& shape);
   [[nodiscard]] bool IsOneVehicle(std::span<const Reflection> reflections,
                                   const VehicleShape& shape, int a, int b) const;
 

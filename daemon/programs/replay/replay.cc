@@ -91,6 +91,35 @@ void WriteAll(const Outbox& outbox, Timestamp at, LogWriter* writer) {
   }
 }
 
+// As old as it was when the log began: the same log gives the same bytes on any day.
+bool RestoreTrust(const DaemonConfig& config, Timestamp begin, Engine& engine, std::string& error) {
+  if (config.state.file.empty()) return true;
+  LoadedTrust trust =
+      LoadTrust(config.state.file, config.perception.vehicle.id, begin, config.state.max_age_s);
+  error = trust.problem;
+  if (!error.empty()) return false;
+  engine.RestoreTrust(std::move(trust.senders));
+  return true;
+}
+
+void Step(const LogEvent& event, Engine& engine, Outbox& outbox, ChannelFigures& channel,
+          ReplayResult& result) {
+  ++result.inputs;
+  outbox.Clear();
+  const std::int64_t accepted_before = engine.accepted();
+  const ReasonCounts refused_before = engine.refusals();
+  const auto before = SteadyClock::now();
+  engine.OnMessage(event.channel, event.bytes, event.received, outbox);
+  result.step_us.push_back(Microseconds(SteadyClock::now() - before));
+  channel.accepted += engine.accepted() - accepted_before;
+  for (std::size_t i = 0; i < kReasonCount; ++i) {
+    const std::uint64_t more = engine.refusals()[i] - refused_before[i];
+    if (more > 0) channel.refused[static_cast<Reason>(i)] += static_cast<std::int64_t>(more);
+  }
+  if (engine.has_lists()) ++result.lists;
+  Note(engine.TakeNoticeChanges(), result.notices);
+}
+
 }  // namespace
 
 bool Replay(const std::string& in, const std::string& out, const DaemonConfig& given,
@@ -115,14 +144,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
   while (reader->Next(event)) {
     if (result.events == 0) {
       first = last = event.received;
-      if (!config.state.file.empty()) {
-        // As old as it was when the log began: the same log gives the same bytes on any day.
-        LoadedTrust trust = LoadTrust(config.state.file, config.perception.vehicle.id,
-                                      event.received, config.state.max_age_s);
-        error = trust.problem;
-        if (!error.empty()) return false;
-        engine.RestoreTrust(std::move(trust.senders));
-      }
+      if (!RestoreTrust(config, event.received, engine, error)) return false;
       engine.Start(outbox);
       WriteAll(outbox, event.received, writer.get());
     }
@@ -146,20 +168,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
       ++result.copied;
       continue;
     }
-    ++result.inputs;
-    outbox.Clear();
-    const std::int64_t accepted_before = engine.accepted();
-    const ReasonCounts refused_before = engine.refusals();
-    const auto before = SteadyClock::now();
-    engine.OnMessage(event.channel, event.bytes, event.received, outbox);
-    result.step_us.push_back(Microseconds(SteadyClock::now() - before));
-    channel.accepted += engine.accepted() - accepted_before;
-    for (std::size_t i = 0; i < kReasonCount; ++i) {
-      const std::uint64_t more = engine.refusals()[i] - refused_before[i];
-      if (more > 0) channel.refused[static_cast<Reason>(i)] += static_cast<std::int64_t>(more);
-    }
-    if (engine.has_lists()) ++result.lists;
-    Note(engine.TakeNoticeChanges(), result.notices);
+    Step(event, engine, outbox, channel, result);
     WriteAll(outbox, event.received, writer.get());
   }
   result.wall_seconds = std::chrono::duration<double>(SteadyClock::now() - started).count();

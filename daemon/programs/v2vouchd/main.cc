@@ -59,10 +59,7 @@ void PrintSummary(const v2vouch::DaemonSummary& summary) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  v2vouch::GuardStandardStreams("v2vouchd");
+struct Options {
   std::string config_path;
   std::string url;
   std::string v2v_url;
@@ -70,22 +67,52 @@ int main(int argc, char** argv) {
   bool prints_config = false;
   bool prints_keys = false;
   bool keeps_no_state = false;
-  CLI::App app("Tells the car which vehicles are around it, and which it may rely on.");
-  app.footer(kExamples);
-  app.add_option("--config", config_path, "Vehicle description (default: the shipped vehicle)");
-  app.add_option("-l,--lcm-url", url,
+};
+
+void AddOptions(CLI::App& app, Options& options) {
+  app.add_option("--config", options.config_path,
+                 "Vehicle description (default: the shipped vehicle)");
+  app.add_option("-l,--lcm-url", options.url,
                  "LCM URL (default: lcm.url of the configuration, else "
                  "LCM_DEFAULT_URL)");
-  app.add_option("--v2v-lcm-url", v2v_url, "LCM URL of BSMs, on a port of its own");
-  app.add_option("--state", state_file,
+  app.add_option("--v2v-lcm-url", options.v2v_url, "LCM URL of BSMs, on a port of its own");
+  app.add_option("--state", options.state_file,
                  "File that keeps senders' penalties over a restart (default: state.file of the "
                  "configuration, else trust.state in STATE_DIRECTORY, else none)");
-  app.add_flag("--no-state", keeps_no_state, "Neither read nor write such a file");
-  app.add_flag("--print-config", prints_config, "Print the effective configuration and end");
-  app.add_flag("--print-config-keys", prints_keys,
+  app.add_flag("--no-state", options.keeps_no_state, "Neither read nor write such a file");
+  app.add_flag("--print-config", options.prints_config,
+               "Print the effective configuration and end");
+  app.add_flag("--print-config-keys", options.prints_keys,
                "Print every key with its range and built-in value, one a line, and end");
+}
+
+// What the command line and the service manager say goes before the configuration file.
+void Override(const Options& options, v2vouch::DaemonConfig& config,
+              std::vector<std::string>& problems) {
+  if (!options.url.empty()) config.lcm.url = options.url;
+  if (!options.v2v_url.empty()) config.lcm.v2v_url = options.v2v_url;
+  if (!options.state_file.empty()) config.state.file = options.state_file;
+  if (const char* folder = std::getenv("STATE_DIRECTORY"); folder && config.state.file.empty()) {
+    const std::string folders = folder;  // systemd may name several, with a colon between.
+    config.state.file = folders.substr(0, folders.find(':')) + "/trust.state";
+  }
+  if (options.keeps_no_state) config.state.enabled = false;
+  for (const std::string& given : {v2vouch::EffectiveLcmUrl(config.lcm.url), config.lcm.v2v_url}) {
+    const auto faults = v2vouch::LcmUrlProblems(given);
+    problems.insert(problems.end(), faults.begin(), faults.end());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouchd");
+  Options options;
+  CLI::App app("Tells the car which vehicles are around it, and which it may rely on.");
+  app.footer(kExamples);
+  AddOptions(app, options);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouchd", argc, argv)) return *code;
-  if (prints_keys) {
+  if (options.prints_keys) {
     for (const auto& key : v2vouch::DaemonConfigKeys()) {
       std::printf("%s\t%s\t%s\n", key.path.c_str(), key.range.c_str(), key.value.c_str());
     }
@@ -95,26 +122,15 @@ int main(int argc, char** argv) {
   v2vouch::DaemonConfig config;
   std::vector<std::string> problems;
   std::vector<std::string> notes;
-  v2vouch::LoadDaemonConfig(config_path, config, problems, &notes);
-  if (!url.empty()) config.lcm.url = url;
-  if (!v2v_url.empty()) config.lcm.v2v_url = v2v_url;
-  if (!state_file.empty()) config.state.file = state_file;
-  if (const char* folder = std::getenv("STATE_DIRECTORY"); folder && config.state.file.empty()) {
-    const std::string folders = folder;  // systemd may name several, with a colon between.
-    config.state.file = folders.substr(0, folders.find(':')) + "/trust.state";
-  }
-  if (keeps_no_state) config.state.enabled = false;
-  for (const std::string& given : {v2vouch::EffectiveLcmUrl(config.lcm.url), config.lcm.v2v_url}) {
-    const auto faults = v2vouch::LcmUrlProblems(given);
-    problems.insert(problems.end(), faults.begin(), faults.end());
-  }
+  v2vouch::LoadDaemonConfig(options.config_path, config, problems, &notes);
+  Override(options, config, problems);
   std::unique_ptr<v2vouch::ObjectDetector> detector;
-  if (problems.empty() && !prints_config) detector = LoadDetector(config, problems);
+  if (problems.empty() && !options.prints_config) detector = LoadDetector(config, problems);
   for (const std::string& problem : problems) std::cerr << problem << '\n';
   if (!problems.empty()) return 2;
   for (const std::string& note : notes) std::cerr << "note: " << note << '\n';
-  if (prints_config) {
-    v2vouch::MakeAbsolute(config_path, config);
+  if (options.prints_config) {
+    v2vouch::MakeAbsolute(options.config_path, config);
     std::cout << v2vouch::PrintDaemonConfig(config);
     return 0;
   }

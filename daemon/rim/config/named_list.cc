@@ -63,6 +63,52 @@ struct Element {
   bool removes = false;
 };
 
+std::vector<Element> ReadElements(const YamlNode& list, const NamedList& rule,
+                                  const std::vector<std::string>& there) {
+  std::vector<Element> elements;
+  for (const YamlNode& item : list.items) {
+    const YamlNode* name = ValueOf(item, rule.name);
+    Element& element = elements.emplace_back();
+    if (name != nullptr) {
+      element.name = Plain(name->text);
+    } else if (there.size() == 1 && list.items.size() == 1) {
+      element.name = there.front();
+    }
+    element.missing = Missing(item, rule.needed);
+    element.adds = IsTrue(item, "add", element.problem);
+    element.removes = IsTrue(item, "remove", element.problem);
+  }
+  return elements;
+}
+
+// What to do with element `i`, which is named once. nullopt with the problem reported.
+std::optional<ListPlan::Action> Decide(const Element& element, const YamlNode& item,
+                                       const std::vector<std::string>& there, bool keeps_others,
+                                       const std::function<void(const std::string&)>& report) {
+  using Action = ListPlan::Action;
+  const bool is_there = std::ranges::find(there, element.name) != there.end();
+  const std::string there_text = there.empty() ? "there is none" : "there are " + Listed(there);
+  if (element.removes) {
+    if (is_there && item.keys.size() <= 2) return Action::kRemove;
+    report(is_there ? "is removed: no other key belongs here"
+                    : "there is no " + element.name + " to remove" +
+                          DidYouMean(element.name, there) + "; " + there_text);
+  } else if (keeps_others && is_there) {
+    if (!element.adds) return Action::kAmend;
+    report(element.name + " is there already: without `add` its keys are changed");
+  } else if (!element.missing.empty()) {
+    report("lacks " + element.missing + ": " + element.name + " is new" +
+           DidYouMean(element.name, there) + ", and a new one must be complete; " + there_text);
+  } else if (keeps_others && !element.adds) {
+    report(element.name + " is new and complete, others in this list are not" +
+           DidYouMean(element.name, there) + ": say `add: true` to add it to those there are (" +
+           Listed(there) + "), or complete all for a list of its own");
+  } else {
+    return Action::kNew;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 const NamedList* NamedListAt(std::string_view path) {
@@ -75,21 +121,10 @@ const NamedList* NamedListAt(std::string_view path) {
 
 ListPlan PlanList(const YamlNode& list, const NamedList& rule,
                   const std::vector<std::string>& there, const ListProblem& report) {
-  std::vector<Element> elements;
-  bool has_parts = false;
-  for (const YamlNode& item : list.items) {
-    const YamlNode* name = ValueOf(item, rule.name);
-    Element& element = elements.emplace_back();
-    if (name != nullptr) {
-      element.name = Plain(name->text);
-    } else if (there.size() == 1 && list.items.size() == 1) {
-      element.name = there.front();
-    }
-    element.missing = Missing(item, rule.needed);
-    element.adds = IsTrue(item, "add", element.problem);
-    element.removes = IsTrue(item, "remove", element.problem);
-    has_parts |= element.adds || (!element.missing.empty() && !element.removes);
-  }
+  const std::vector<Element> elements = ReadElements(list, rule, there);
+  const bool has_parts = std::ranges::any_of(elements, [](const Element& element) {
+    return element.adds || (!element.missing.empty() && !element.removes);
+  });
   const bool only_removes = !elements.empty() && std::ranges::all_of(elements, &Element::removes);
 
   ListPlan plan;
@@ -114,35 +149,9 @@ ListPlan PlanList(const YamlNode& list, const NamedList& rule,
                     std::to_string(at->second) + "]");
       continue;
     }
-    const bool is_there = std::ranges::find(there, element.name) != there.end();
-    const std::string there_text = there.empty() ? "there is none" : "there are " + Listed(there);
-    if (element.removes) {
-      if (!is_there) {
-        report(i, "there is no " + element.name + " to remove" + DidYouMean(element.name, there) +
-                      "; " + there_text);
-      } else if (list.items[i].keys.size() > 2) {
-        report(i, "is removed: no other key belongs here");
-      } else {
-        plan.steps.push_back({ListPlan::Action::kRemove, i, element.name});
-      }
-    } else if (plan.keeps_others && is_there) {
-      if (element.adds) {
-        report(i, element.name + " is there already: without `add` its keys are changed");
-        continue;
-      }
-      plan.steps.push_back({ListPlan::Action::kAmend, i, element.name});
-    } else if (!element.missing.empty()) {
-      report(i, "lacks " + element.missing + ": " + element.name + " is new" +
-                    DidYouMean(element.name, there) + ", and a new one must be complete; " +
-                    there_text);
-    } else if (plan.keeps_others && !element.adds) {
-      report(i, element.name + " is new and complete, others in this list are not" +
-                    DidYouMean(element.name, there) +
-                    ": say `add: true` to add it to those there are (" + Listed(there) +
-                    "), or complete all for a list of its own");
-    } else {
-      plan.steps.push_back({ListPlan::Action::kNew, i, element.name});
-    }
+    const auto action = Decide(element, list.items[i], there, plan.keeps_others,
+                               [&](const std::string& problem) { report(i, problem); });
+    if (action) plan.steps.push_back({*action, i, element.name});
   }
   if (!plan.keeps_others && rule.is_merged && !elements.empty()) {
     for (const std::string& name : there) {

@@ -122,6 +122,80 @@ void Judge(const Diversity& diversity, const Oddities& odd, const RemoteRules& r
   say(CalibrationVerdict::kEstimated, "");
 }
 
+struct Unknowns {
+  std::array<double, kConstant> x{};
+  double turn_rad = 0.0;
+  std::vector<std::array<double, 2>> knots;
+};
+
+using Residuals = std::vector<ceres::ResidualBlockId>;
+
+void AddPriors(const RemoteRules& rules, ceres::Problem& problem, Unknowns& u) {
+  const double sigma_m = std::hypot(rules.noise.sender_sigma_m, rules.noise.common_sigma_m);
+  const PriorTerm<kConstant> prior{{sigma_m, sigma_m, rules.latency_sigma_s, rules.offset_sigma_m,
+                                    kSlopePrior_mps, kSlopePrior_mps}};
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<PriorTerm<kConstant>, kConstant, kConstant>(
+          new PriorTerm<kConstant>(prior)),
+      nullptr, u.x.data());
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorTerm<2>, 2, 2>(
+                               new PriorTerm<2>(EastNorth(rules.noise.wander_sigma_m))),
+                           nullptr, u.knots[0].data());
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<PriorTerm<1>, 1, 1>(new PriorTerm<1>{{kTurnPrior_rad}}),
+      nullptr, &u.turn_rad);
+  problem.SetParameterBlockConstant(&u.turn_rad);
+}
+
+Residuals AddSteps(const RemoteRules& rules, ceres::Problem& problem, Unknowns& u) {
+  const WanderTerm step(rules.noise);
+  Residuals steps;
+  for (std::size_t k = 1; k < u.knots.size(); ++k) {
+    steps.push_back(problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<WanderTerm, 2, 2, 2>(new WanderTerm(step)), nullptr,
+        u.knots[k - 1].data(), u.knots[k].data()));
+  }
+  return steps;
+}
+
+Residuals AddBlocks(const std::vector<Block>& blocks, double knot_s, ceres::LossFunction& huber,
+                    ceres::Problem& problem, Unknowns& u) {
+  Residuals data;
+  for (const Block& block : blocks) {
+    const double at = block.time_s / knot_s;
+    const auto k = static_cast<std::size_t>(at);
+    const Eigen::Matrix2d whiten =
+        block.covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
+    data.push_back(problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<BlockCost, 2, kConstant, 1, 2, 2>(
+            new BlockCost{block, whiten, at - static_cast<double>(k), 0.5 * blocks.back().time_s}),
+        &huber, u.x.data(), &u.turn_rad, u.knots[k].data(), u.knots[k + 1].data()));
+  }
+  return data;
+}
+
+double MeanSquare(ceres::Problem& problem, const Residuals& of) {
+  ceres::Problem::EvaluateOptions only;
+  only.residual_blocks = of;
+  only.apply_loss_function = false;
+  std::vector<double> r;
+  problem.Evaluate(only, nullptr, &r, nullptr, nullptr);
+  return std::inner_product(r.begin(), r.end(), r.begin(), 0.0) /
+         std::max(1.0, static_cast<double>(r.size()));
+}
+
+void SetEstimate(const Unknowns& u, const Eigen::MatrixXd& C, RemoteSolution& s, Oddities& odd) {
+  s.bias_en = {u.x[0], u.x[1]};
+  s.bias_covariance = C.topLeftCorner<2, 2>();
+  s.latency_s = u.x[2];
+  s.latency_std_s = std::sqrt(C(2, 2));
+  s.offset_m = u.x[3];
+  s.offset_std_m = std::sqrt(C(3, 3));
+  const Eigen::Vector2d slope(u.x[4], u.x[5]);
+  s.slope_mps = slope.norm();
+  odd.slope_sigmas = std::sqrt(slope.dot(C.block<2, 2>(4, 4).ldlt().solve(slope)));
+}
+
 }  // namespace
 
 RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs, double consider_m,
@@ -138,92 +212,43 @@ RemoteSolution SolveRemote(SenderId sender, const std::vector<RemotePair>& pairs
   for (const Block& block : blocks) s.blocks.push_back({block.time_s, block.mean});
 
   const double knot_s = rules.noise.knot_s;
-  const WanderTerm step(rules.noise);
-  std::array<double, kConstant> x{};
-  double turn_rad = 0.0;
-  std::vector<std::array<double, 2>> knots(static_cast<std::size_t>(blocks.back().time_s / knot_s) +
-                                           2);
+  Unknowns u;
+  u.knots.resize(static_cast<std::size_t>(blocks.back().time_s / knot_s) + 2);
   ceres::HuberLoss huber(rules.noise.huber);
   ceres::Problem::Options options;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(options);
-  const double sigma_m = std::hypot(rules.noise.sender_sigma_m, rules.noise.common_sigma_m);
-  const PriorTerm<kConstant> prior{{sigma_m, sigma_m, rules.latency_sigma_s, rules.offset_sigma_m,
-                                    kSlopePrior_mps, kSlopePrior_mps}};
-  problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<PriorTerm<kConstant>, kConstant, kConstant>(
-          new PriorTerm<kConstant>(prior)),
-      nullptr, x.data());
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorTerm<2>, 2, 2>(
-                               new PriorTerm<2>(EastNorth(rules.noise.wander_sigma_m))),
-                           nullptr, knots[0].data());
-  problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<PriorTerm<1>, 1, 1>(new PriorTerm<1>{{kTurnPrior_rad}}),
-      nullptr, &turn_rad);
-  problem.SetParameterBlockConstant(&turn_rad);
-  std::vector<ceres::ResidualBlockId> steps;
-  for (std::size_t k = 1; k < knots.size(); ++k) {
-    steps.push_back(problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<WanderTerm, 2, 2, 2>(new WanderTerm(step)), nullptr,
-        knots[k - 1].data(), knots[k].data()));
-  }
-  std::vector<ceres::ResidualBlockId> data;
-  for (const Block& block : blocks) {
-    const double at = block.time_s / knot_s;
-    const auto k = static_cast<std::size_t>(at);
-    const Eigen::Matrix2d whiten =
-        block.covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
-    data.push_back(problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<BlockCost, 2, kConstant, 1, 2, 2>(
-            new BlockCost{block, whiten, at - static_cast<double>(k), 0.5 * blocks.back().time_s}),
-        &huber, x.data(), &turn_rad, knots[k].data(), knots[k + 1].data()));
-  }
+  AddPriors(rules, problem, u);
+  const Residuals steps = AddSteps(rules, problem, u);
+  const Residuals data = AddBlocks(blocks, knot_s, huber, problem, u);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
-  if (knots.size() > 20) solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  if (u.knots.size() > 20) solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   solver.max_num_iterations = kIterations;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
 
-  std::vector<double*> unknowns{x.data()};
-  for (auto& knot : knots) unknowns.push_back(knot.data());
+  std::vector<double*> unknowns{u.x.data()};
+  for (auto& knot : u.knots) unknowns.push_back(knot.data());
   const Eigen::MatrixXd C = CovarianceOf(problem, unknowns, kConstant);
   double range_square = 0.0;
   for (const RemotePair& pair : pairs) range_square += pair.range_m * pair.range_m;
   range_square /= static_cast<double>(pairs.size());
-  s.bias_en = {x[0], x[1]};
-  s.bias_covariance = C.topLeftCorner<2, 2>();
+  Oddities odd;
+  SetEstimate(u, C, s, odd);
   s.bias_covariance += (consider_m * consider_m + consider_rad * consider_rad * range_square) *
                        Eigen::Matrix2d::Identity();
-  s.latency_s = x[2];
-  s.latency_std_s = std::sqrt(C(2, 2));
-  s.offset_m = x[3];
-  s.offset_std_m = std::sqrt(C(3, 3));
-  const Eigen::Vector2d slope(x[4], x[5]);
-  s.slope_mps = slope.norm();
-  Oddities odd;
-  odd.slope_sigmas = std::sqrt(slope.dot(C.block<2, 2>(4, 4).ldlt().solve(slope)));
-
-  const auto squares = [&](const std::vector<ceres::ResidualBlockId>& of) {
-    ceres::Problem::EvaluateOptions only;
-    only.residual_blocks = of;
-    only.apply_loss_function = false;
-    std::vector<double> r;
-    problem.Evaluate(only, nullptr, &r, nullptr, nullptr);
-    return std::inner_product(r.begin(), r.end(), r.begin(), 0.0) /
-           std::max(1.0, static_cast<double>(r.size()));
-  };
-  s.chi_square_per_dof = squares(data);
-  s.wander_chi_square = steps.empty() ? 0.0 : squares(steps);
+  s.chi_square_per_dof = MeanSquare(problem, data);
+  s.wander_chi_square = steps.empty() ? 0.0 : MeanSquare(problem, steps);
 
   // Once more with the sender's world free to turn about the ego. Without, a turn passes for an
   // offset that wanders with the ego's direction; always free, it would take from what is known of
   // the bias.
-  problem.SetParameterBlockVariable(&turn_rad);
+  problem.SetParameterBlockVariable(&u.turn_rad);
   ceres::Solve(solver, &problem, &summary);
-  unknowns.insert(unknowns.begin(), &turn_rad);
-  s.turn_rad = turn_rad;
+  unknowns.insert(unknowns.begin(), &u.turn_rad);
+  s.turn_rad = u.turn_rad;
   s.turn_std_rad = std::hypot(std::sqrt(CovarianceOf(problem, unknowns, 1)(0, 0)), consider_rad);
   odd.turn_sigmas = std::abs(s.turn_rad) / s.turn_std_rad;
   Judge(DiversityOf(pairs), odd, rules, s);

@@ -43,6 +43,41 @@ bool DirectionReading::Settle(const Claim& claim, const Eigen::Vector3d& u, doub
   return is_against_ != was_against;
 }
 
+// Whether motion goes against the heading `u`, from the message before and what was driven since.
+// @return whether displacement or speed has changed the answer.
+bool DirectionReading::Follow(Transmission transmission, const Claim& claim,
+                              const Eigen::Vector3d& u, double speed_mps) {
+  const bool is_reverse = transmission == Transmission::kReverse;
+  const bool is_forward = transmission == Transmission::kForward;
+  if (!has_last_) {
+    is_against_ = false;
+    is_settled_ = false;
+    from_E_ = claim.p_E;
+    way_.setZero();
+    return false;
+  }
+  const bool was_reverse = transmission_ == Transmission::kReverse;
+  // With the gear, what the heading means may change; so may it where it turns round.
+  if (is_reverse != was_reverse || is_forward != (transmission_ == Transmission::kForward)) {
+    is_settled_ = false;
+    from_E_ = claim.p_E;
+    way_.setZero();
+    if (!is_reverse) is_against_ = false;
+  } else if (u.dot(u_) < kTurned) {
+    is_settled_ = false;
+    is_against_ = false;
+  }
+  // In reverse gear the body keeps its direction until displacement has spoken.
+  if (is_reverse && !is_settled_) is_against_ = u.dot(course_) > 0.0;
+  const bool may_reverse = is_reverse || (!is_forward && speed_mps <= kMostReverse_mps);
+  if (may_reverse) return Settle(claim, u, speed_mps);
+  const bool has_changed = is_against_;
+  is_against_ = false;
+  is_settled_ = false;
+  from_E_ = claim.p_E;
+  way_.setZero();
+  return has_changed;
+}
 bool DirectionReading::Read(Transmission transmission, Claim& claim) {
   if (!claim.has_course) {
     has_last_ = false;
@@ -53,38 +88,8 @@ bool DirectionReading::Read(Transmission transmission, Claim& claim) {
   const bool is_forward = transmission == Transmission::kForward;
   const Eigen::Vector3d u = is_reverse ? Eigen::Vector3d(-claim.course_E) : claim.course_E;
   const double speed_mps = std::abs(claim.speed_mps);
-  bool has_changed = false;
   const bool was_known = has_last_;
-  if (!has_last_) {
-    is_against_ = false;
-    is_settled_ = false;
-    from_E_ = claim.p_E;
-    way_.setZero();
-  } else {
-    const bool was_reverse = transmission_ == Transmission::kReverse;
-    // With the gear, what the heading means may change; so may it where it turns round.
-    if (is_reverse != was_reverse || is_forward != (transmission_ == Transmission::kForward)) {
-      is_settled_ = false;
-      from_E_ = claim.p_E;
-      way_.setZero();
-      if (!is_reverse) is_against_ = false;
-    } else if (u.dot(u_) < kTurned) {
-      is_settled_ = false;
-      is_against_ = false;
-    }
-    // In reverse gear the body keeps its direction until displacement has spoken.
-    if (is_reverse && !is_settled_) is_against_ = u.dot(course_) > 0.0;
-    const bool may_reverse = is_reverse || (!is_forward && speed_mps <= kMostReverse_mps);
-    if (may_reverse) {
-      has_changed = Settle(claim, u, speed_mps);
-    } else {
-      has_changed = is_against_;
-      is_against_ = false;
-      is_settled_ = false;
-      from_E_ = claim.p_E;
-      way_.setZero();
-    }
-  }
+  const bool has_changed = Follow(transmission, claim, u, speed_mps);
   const Eigen::Vector3d direction = is_against_ ? Eigen::Vector3d(-u) : u;  // Of motion.
   if (is_reverse) {
     claim.course_E = -direction;

@@ -36,6 +36,8 @@ class DirectionReading {
 
  private:
   bool Settle(const Claim& claim, const Eigen::Vector3d& u, double speed_mps);
+  bool Follow(Transmission transmission, const Claim& claim, const Eigen::Vector3d& u,
+              double speed_mps);
 
   bool has_last_ = false;
   Timestamp last_{};

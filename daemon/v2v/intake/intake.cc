@@ -36,6 +36,51 @@ BsmIntake::BsmIntake(const IntakeConfig& config)
   std::iota(free_slots_.rbegin(), free_slots_.rend(), 0U);
 }
 
+void BsmIntake::RefillTokens(Timestamp now) {
+  const double since = refilled_ ? std::max(0.0, ToSeconds(now - *refilled_)) : 0.0;
+  refilled_ = now;
+  const double total_room = config_.max_total_rate_hz * kTotalBurst_s;
+  total_tokens_ = std::min(total_room, total_tokens_ + since * config_.max_total_rate_hz);
+  new_tokens_ = std::min(static_cast<double>(config_.max_new_senders_per_s),
+                         new_tokens_ + since * config_.max_new_senders_per_s);
+}
+
+std::optional<Reason> BsmIntake::TakeKnown(std::size_t index, const Bsm& bsm, Claim& claim) {
+  Account& account = accounts_[index];
+  account.tokens =
+      std::min(config_.burst, account.tokens + std::max(0.0, ToSeconds(bsm.stamp - account.last)) *
+                                                   config_.max_rate_hz);
+  account.last = bsm.stamp;
+  if (account.tokens < 1.0) {
+    ++senders_[index].over_rate;
+    checks_[account.slot].OnOverRate(bsm.stamp);
+    return Reason::kBsmRate;
+  }
+  account.tokens -= 1.0;
+  const bool is_reread = directions_[account.slot].Read(bsm.transmission, claim);
+  if (is_reread) checks_[account.slot].OnReread();
+  if (!AdvanceSender(senders_[index], bsm, claim, is_reread)) {
+    Remove(index);
+    return Reason::kSenderNumerics;
+  }
+  return std::nullopt;
+}
+
+std::optional<Reason> BsmIntake::TakeNew(const Bsm& bsm, Claim& claim) {
+  if (const auto refusal = MakeRoom(bsm.sender, bsm.stamp)) return *refusal;
+  const std::size_t index = IndexOf(bsm.sender);
+  const std::uint32_t slot = free_slots_.back();
+  free_slots_.pop_back();
+  directions_[slot] = DirectionReading{};
+  directions_[slot].Read(bsm.transmission, claim);
+  const auto at = static_cast<std::ptrdiff_t>(index);
+  senders_.insert(senders_.begin() + at, StartSender(bsm, claim));
+  checks_[slot] = SenderChecks{};
+  checks_[slot].OnHeard(bsm.stamp);
+  accounts_.insert(accounts_.begin() + at,
+                   Account{bsm.sender, false, slot, config_.burst - 1.0, bsm.stamp});
+  return std::nullopt;
+}
 Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
   if (const auto problem = ContentProblem(bsm)) {
     const std::size_t known = IndexOf(bsm.sender);
@@ -61,49 +106,17 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
     return Reason::kBsmRepeat;
   }
 
-  const double since = refilled_ ? std::max(0.0, ToSeconds(bsm.stamp - *refilled_)) : 0.0;
-  refilled_ = bsm.stamp;
+  RefillTokens(bsm.stamp);
   const double total_room = config_.max_total_rate_hz * kTotalBurst_s;
-  total_tokens_ = std::min(total_room, total_tokens_ + since * config_.max_total_rate_hz);
-  new_tokens_ = std::min(static_cast<double>(config_.max_new_senders_per_s),
-                         new_tokens_ + since * config_.max_new_senders_per_s);
 
   std::size_t index = IndexOf(bsm.sender);
   const bool is_known = Holds(index, bsm.sender);
   if (is_known) checks_[accounts_[index].slot].OnHeard(bsm.stamp);
   if (total_tokens_ < (is_known ? 1.0 : 0.5 * total_room)) return Reason::kBsmRate;
-  if (is_known) {
-    Account& account = accounts_[index];
-    account.tokens = std::min(
-        config_.burst,
-        account.tokens + std::max(0.0, ToSeconds(bsm.stamp - account.last)) * config_.max_rate_hz);
-    account.last = bsm.stamp;
-    if (account.tokens < 1.0) {
-      ++senders_[index].over_rate;
-      checks_[account.slot].OnOverRate(bsm.stamp);
-      return Reason::kBsmRate;
-    }
-    account.tokens -= 1.0;
-    const bool is_reread = directions_[account.slot].Read(bsm.transmission, claim);
-    if (is_reread) checks_[account.slot].OnReread();
-    if (!AdvanceSender(senders_[index], bsm, claim, is_reread)) {
-      Remove(index);
-      return Reason::kSenderNumerics;
-    }
-  } else {
-    if (const auto refusal = MakeRoom(bsm.sender, bsm.stamp)) return *refusal;
-    index = IndexOf(bsm.sender);
-    const std::uint32_t slot = free_slots_.back();
-    free_slots_.pop_back();
-    directions_[slot] = DirectionReading{};
-    directions_[slot].Read(bsm.transmission, claim);
-    const auto at = static_cast<std::ptrdiff_t>(index);
-    senders_.insert(senders_.begin() + at, StartSender(bsm, claim));
-    checks_[slot] = SenderChecks{};
-    checks_[slot].OnHeard(bsm.stamp);
-    accounts_.insert(accounts_.begin() + at,
-                     Account{bsm.sender, false, slot, config_.burst - 1.0, bsm.stamp});
+  if (const auto refusal = is_known ? TakeKnown(index, bsm, claim) : TakeNew(bsm, claim)) {
+    return *refusal;
   }
+  if (!is_known) index = IndexOf(bsm.sender);
   total_tokens_ -= 1.0;
   repeats_.Keep(bsm);
   if (heard.finding == RepeatMemory::Finding::kOtherSender) Contest(heard.id_tag, index);

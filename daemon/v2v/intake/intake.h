@@ -148,6 +148,9 @@ class BsmIntake {
   [[nodiscard]] std::size_t IndexOf(SenderId sender) const;
   [[nodiscard]] bool Holds(std::size_t index, SenderId sender) const;
   [[nodiscard]] std::optional<Reason> MakeRoom(SenderId newcomer, Timestamp now);
+  void RefillTokens(Timestamp now);
+  [[nodiscard]] std::optional<Reason> TakeKnown(std::size_t index, const Bsm& bsm, Claim& claim);
+  [[nodiscard]] std::optional<Reason> TakeNew(const Bsm& bsm, Claim& claim);
   void Remove(std::size_t index);
   void Contest(std::uint16_t id_tag, std::size_t copy);
 

@@ -122,6 +122,55 @@ Excess Compare(const Line& line, const Eigen::Vector2d& claimed_mps, double wind
   return excess;
 }
 
+// What was claimed and made good over one window.
+struct Window {
+  const std::array<Sums, 65>& sums;
+  std::size_t n;
+  double span_s;
+  Eigen::Vector2d claimed_mps;
+  double between_m;
+};
+
+void RaiseExcess(const Window& window, const PathStep& step, const MessageCheckConfig& config,
+                 Excess& speed, Excess& course) {
+  const auto n = static_cast<double>(window.n);
+  const auto compare = [&](const Line& line) {
+    return Compare(line, window.claimed_mps, window.span_s, n, window.between_m, step, config);
+  };
+  const Sums& all = window.sums[window.n - 1];
+  const Excess plain = compare(Fit(all.Stt(), all.Str(), all.Srr(), n - 2.0));
+  if (plain.speed <= std::max(1.0, speed.speed) && plain.course <= std::max(1.0, course.course)) {
+    return;
+  }
+  const auto broken_line = FitBroken(window.sums, window.n);
+  if (!broken_line) return;
+  const Excess broken = compare(*broken_line);
+  const Excess& less_speed = broken.speed < plain.speed ? broken : plain;
+  const Excess& less_course = broken.course < plain.course ? broken : plain;
+  if (less_speed.speed > speed.speed) speed = less_speed;
+  if (less_course.course > course.course) course = less_course;
+}
+
+// @param accuses_speed, accuses_course whether the excess has held for long enough.
+std::optional<Finding> Conclude(const Excess& speed, const Excess& course, bool accuses_speed,
+                                bool accuses_course) {
+  const auto of_speed = [&] {
+    const double times = accuses_speed ? kAccusation : 1.0;
+    return Finding{Check::kSpeedAgainstPath, accuses_speed ? Verdict::kAccuse : Verdict::kWithdraw,
+                   "speed_error_mps", speed.speed_error_mps, times * speed.speed_limit_mps};
+  };
+  const auto of_course = [&] {
+    const double times = accuses_course ? kAccusation : 1.0;
+    return Finding{Check::kCourseAgainstPath,
+                   accuses_course ? Verdict::kAccuse : Verdict::kWithdraw, "course_error_rad",
+                   course.course_error_rad, times * course.course_limit_rad};
+  };
+  if (std::max(speed.speed, course.course) <= 1.0) return std::nullopt;
+  const bool is_course =
+      accuses_speed != accuses_course ? accuses_course : course.course > speed.speed;
+  return is_course ? of_course() : of_speed();
+}
+
 }  // namespace
 
 Eigen::Vector2d ClaimedWay(double yaw_from_rad, double speed_from_mps, double yaw_to_rad,
@@ -177,45 +226,14 @@ std::optional<Finding> PathCheck::Judge(const PathStep& step, const MessageCheck
     if (-t < kWindows_s[window] || n < kFewest || way < config.path_min_m) continue;
     while (window < kWindows_s.size() && -t >= kWindows_s[window]) ++window;
 
-    const auto compare = [&](const Line& line) {
-      return Compare(line, claimed / -t, -t, static_cast<double>(n), std::sqrt(between), step,
-                     config);
-    };
-    const Sums& all = sums[n - 1];
-    const Excess plain =
-        compare(Fit(all.Stt(), all.Str(), all.Srr(), static_cast<double>(n) - 2.0));
-    if (plain.speed <= std::max(1.0, speed.speed) && plain.course <= std::max(1.0, course.course)) {
-      continue;
-    }
-    const auto broken_line = FitBroken(sums, n);
-    if (!broken_line) continue;
-    const Excess broken = compare(*broken_line);
-    const Excess& less_speed = broken.speed < plain.speed ? broken : plain;
-    const Excess& less_course = broken.course < plain.course ? broken : plain;
-    if (less_speed.speed > speed.speed) speed = less_speed;
-    if (less_course.course > course.course) course = less_course;
+    RaiseExcess({sums, n, -t, claimed / -t, std::sqrt(between)}, step, config, speed, course);
   }
 
   speed_held_s_ = speed.speed > kAccusation ? speed_held_s_ + step.dt_s : 0.0;
   course_held_s_ =
       course.course > kAccusation && !course.may_be_reverse ? course_held_s_ + step.dt_s : 0.0;
-  const bool accuses_speed = speed_held_s_ >= config.accuse_hold_s;
-  const bool accuses_course = course_held_s_ >= config.accuse_hold_s;
-  const auto of_speed = [&] {
-    const double times = accuses_speed ? kAccusation : 1.0;
-    return Finding{Check::kSpeedAgainstPath, accuses_speed ? Verdict::kAccuse : Verdict::kWithdraw,
-                   "speed_error_mps", speed.speed_error_mps, times * speed.speed_limit_mps};
-  };
-  const auto of_course = [&] {
-    const double times = accuses_course ? kAccusation : 1.0;
-    return Finding{Check::kCourseAgainstPath,
-                   accuses_course ? Verdict::kAccuse : Verdict::kWithdraw, "course_error_rad",
-                   course.course_error_rad, times * course.course_limit_rad};
-  };
-  if (std::max(speed.speed, course.course) <= 1.0) return std::nullopt;
-  const bool is_course =
-      accuses_speed != accuses_course ? accuses_course : course.course > speed.speed;
-  return is_course ? of_course() : of_speed();
+  return Conclude(speed, course, speed_held_s_ >= config.accuse_hold_s,
+                  course_held_s_ >= config.accuse_hold_s);
 }
 
 }  // namespace v2vouch
