@@ -29,6 +29,7 @@ class TrackFilter {
 
   /// A vehicle at once.
   static TrackFilter FromPose(const PoseMeasurement& measurement);
+  static TrackFilter FromBox(const BoxMeasurement& measurement);
 
   /// A track that only cameras have seen learns its range from a standing return in its direction.
   void TakeStanding(const Fix& fix);
@@ -41,6 +42,8 @@ class TrackFilter {
                                                    const FilterSettings& settings) const;
   [[nodiscard]] std::optional<Likelihood> Evaluate(const PoseMeasurement& measurement,
                                                    const FilterSettings& settings) const;
+  [[nodiscard]] std::optional<Likelihood> Evaluate(const BoxMeasurement& measurement,
+                                                   const FilterSettings& settings) const;
   /// @return false on numerical failure; the track must be dropped.
   template <class Look, class Measurement>
   bool Update(const Look& look, const Measurement& z, const FilterSettings& settings);
@@ -49,6 +52,9 @@ class TrackFilter {
   /// describes: a reflection that may lie anywhere on it knows nothing of the centre that the pose
   /// does not know better.
   bool Update(const PoseMeasurement& measurement);
+  /// The same for a box, of which a point or a vehicle whose direction is in doubt keeps the
+  /// velocity.
+  bool Update(const BoxMeasurement& measurement);
 
   /// Takes the class's typical size for dimensions without a measurement.
   void SetClass(ObjectClass object_class);

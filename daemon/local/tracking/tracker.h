@@ -86,7 +86,13 @@ struct PoseSensor {
   double yaw_rate_span_radps = 0.5;
 };
 
-/// Which pose of the last frame a track was given.
+/// What a sensor of boxes (BoxMeasurement) is like.
+struct BoxSensor {
+  double period_s = 0.1;
+  double clutter_per_m2 = 1e-4;  ///< False boxes per frame and square metre, whatever their score.
+};
+
+/// Which pose or box of the last frame a track was given.
 struct PoseUpdate {
   std::uint64_t track_id = 0;
   std::size_t pose = 0;
@@ -147,6 +153,11 @@ class Tracker {
                    const DetectabilityOf& detectability);
   [[nodiscard]] std::span<const PoseUpdate> pose_updates() const { return pose_updates_; }
 
+  /// One frame of boxes, in O. A box's score weighs in by its log_odds. Refused boxes and
+  /// pose_updates() as for poses.
+  void UpdateBoxes(const BoxSensor& sensor, std::span<const BoxMeasurement> boxes,
+                   const DetectabilityOf& detectability);
+
   /// The ego's own speed was misread since then: what radar alone has started from its Doppler is
   /// void, and standing returns must not keep it alive.
   void ForgetUnpicturedSince(Timestamp since);
@@ -175,7 +186,7 @@ class Tracker {
     int clear_hits = 0;    // Radar clusters from where the radar can see.
     int not_pictured = 0;  // Pictures that ought to have shown it.
     int moving_hits = 0;   // Radar clusters with a Doppler of their own.
-    int pose_hits = 0;
+    int pose_hits = 0;     // Boxes too.
     Timestamp last_pose{};
     double overlap_s = 0.0;  // How long an older track has been in the same place.
     double part_s = 0.0;     // How long it could be the far end of a lorry or bus.
@@ -205,6 +216,7 @@ class Tracker {
   void GatePair(std::size_t track, std::size_t measurement, const Look& look, const Measurement& z);
   void AddPair(std::size_t track, std::size_t measurement, const Likelihood& likelihood,
                double log_cells);
+  void PrepareBoxes(const BoxSensor& sensor, std::span<const BoxMeasurement> boxes);
   void PreparePoses(const PoseSensor& sensor, std::span<const PoseMeasurement> poses);
   [[nodiscard]] double Crowd(std::size_t detections) const;
   void PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements);

@@ -223,6 +223,15 @@ ExtendedState VehicleAt(const PointFilter& point, double yaw_rad, double yaw_sig
   return out;
 }
 
+void FaceAbout(ExtendedState& state) {
+  state.mean[kYaw] = WrapAngle(state.mean[kYaw] + kPi);
+  for (const int k : {static_cast<int>(kSpeed), static_cast<int>(kAccel)}) {
+    state.mean[k] = -state.mean[k];
+    state.covariance.row(k) *= -1.0;
+    state.covariance.col(k) *= -1.0;
+  }
+}
+
 VehicleFilter& VehicleFilter::operator=(const VehicleFilter& other) {
   std::copy_n(other.components_.begin(), other.count_, components_.begin());
   count_ = other.count_;
@@ -408,14 +417,7 @@ void VehicleFilter::TurnRound() {
   if (std::abs(state.mean[kSpeed]) < std::max(kDriving_mps, kDrivingSigmas * sigma)) return;
   has_driven_ = true;
   for (std::size_t i = 0; i < count_; ++i) {
-    ExtendedState& turned = components_[i].state;
-    if (turned.mean[kSpeed] >= 0.0) continue;
-    turned.mean[kYaw] = WrapAngle(turned.mean[kYaw] + kPi);
-    for (const int k : {static_cast<int>(kSpeed), static_cast<int>(kAccel)}) {
-      turned.mean[k] = -turned.mean[k];
-      turned.covariance.row(k) *= -1.0;
-      turned.covariance.col(k) *= -1.0;
-    }
+    if (components_[i].state.mean[kSpeed] < 0.0) FaceAbout(components_[i].state);
   }
 }
 

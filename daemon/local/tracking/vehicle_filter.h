@@ -14,6 +14,8 @@
 
 namespace v2vouch {
 
+struct BoxMeasurement;
+
 /// What the filter has to know beside the measurement.
 struct FilterSettings {
   MotionNoise motion;
@@ -47,6 +49,8 @@ class VehicleFilter {
 
   /// From a pose, which knows the direction; with this size.
   void StartAt(const PoseMeasurement& pose, const Extent& size);
+  /// From a box, which knows axis and size and nothing of the motion.
+  void StartAt(const BoxMeasurement& box);
 
   void Predict(double dt_s, const FilterSettings& settings);
 
@@ -65,6 +69,12 @@ class VehicleFilter {
   /// A whole pose; to be asked only where knows_direction().
   [[nodiscard]] std::optional<Likelihood> Evaluate(const PoseMeasurement& z) const;
   bool Update(const PoseMeasurement& z);
+  /// A box; to be asked only where knows_direction(). Gated by position alone; axis and size add
+  /// their likelihood to log_det, relative to clutter's and bounded from below, since detectors
+  /// turn boxes by a quarter or cut them short.
+  [[nodiscard]] std::optional<Likelihood> Evaluate(const BoxMeasurement& z) const;
+  bool Update(const BoxMeasurement& z);
+  void AssumeSpeed(double speed_mps, double sigma_mps);
   /// One axis is left, and its front is known.
   [[nodiscard]] bool knows_direction() const { return count_ == 1 && has_driven_; }
 
@@ -103,6 +113,9 @@ class VehicleFilter {
   int odd_spans_ = 0;     // Clusters too wide for it, three each, less those that were not.
   bool is_deep_ = false;  // One of them was too deep: none is taken off.
 };
+
+/// The same motion with front and rear exchanged.
+void FaceAbout(ExtendedState& state);
 
 /// A vehicle whose reflecting point is known and whose direction is `yaw_rad`, given (with
 /// `yaw_sigma_rad`) or, where `yaw_sigma_rad` is 0, that of the point's velocity: centre, motion

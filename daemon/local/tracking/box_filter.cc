@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "daemon/common/base/angle.h"
+#include "daemon/common/models/kalman.h"
+#include "daemon/local/tracking/box_measurement.h"
+#include "daemon/local/tracking/track_filter.h"
+
+namespace v2vouch {
+namespace {
+
+// What one box leaves open: anything from standing to motorway speed lies within three sigma.
+constexpr double kInitialSpeedSigma_mps = 10.0;
+constexpr double kInitialYawRateSigma_radps = 0.1;
+constexpr double kInitialAccelSigma_mps2 = 1.5;
+// A reflection lies anywhere on a vehicle: this far from its centre, 1 sigma of each axis.
+constexpr double kReflectionSigma_m = 1.3;
+// Detectors turn one box in twenty by a quarter, or cut it short. Such a value is as likely as
+// clutter's, which spreads over these spans: it must not tear a track from its vehicle.
+constexpr double kOddShare = 0.05;
+constexpr double kAxisSpan_rad = kPi;
+constexpr double kLengthSpan_m = 2.5;
+constexpr double kWidthSpan_m = 0.8;
+// An axis turned by more than this belongs to such a box and teaches nothing.
+constexpr double kOddAxis_rad = 0.6;
+// Motion and detector must both say that the front is the other end.
+constexpr double kBackwards_mps = 1.0;
+constexpr double kBackwardsSigmas = 3.0;
+
+// Difference of two axes, in (-pi/2, pi/2].
+double AxisDifference(double a_rad, double b_rad) {
+  const double d = WrapAngle(a_rad - b_rad);
+  if (d > 0.5 * kPi) return d - kPi;
+  return d <= -0.5 * kPi ? d + kPi : d;
+}
+
+// -2 ln of the density against a clutter value's, which is spread evenly over `span`.
+double Surprise(double difference, double variance, double span) {
+  const double density =
+      std::exp(-0.5 * difference * difference / variance) / std::sqrt(2.0 * kPi * variance);
+  return -2.0 * std::log((1.0 - kOddShare) * density * span + kOddShare);
+}
+
+}  // namespace
+
+std::optional<Reason> FaultOf(const BoxMeasurement& z) {
+  for (const double value : {z.x_m, z.y_m, z.yaw_rad, z.length_m, z.width_m, z.yaw_sigma_rad,
+                             z.length_sigma_m, z.width_sigma_m, z.log_odds}) {
+    if (!std::isfinite(value)) return Reason::kNotFinite;
+  }
+  if (!z.position_covariance.allFinite()) return Reason::kNotFinite;
+  if (std::abs(z.x_m) > kMaxPosition_m || std::abs(z.y_m) > kMaxPosition_m) {
+    return Reason::kOutOfRange;
+  }
+  for (const double value :
+       {z.length_m, z.width_m, z.yaw_sigma_rad, z.length_sigma_m, z.width_sigma_m}) {
+    if (value <= 0.0 || value > 100.0) return Reason::kOutOfRange;
+  }
+  const Eigen::Matrix2d& R = z.position_covariance;
+  if (std::abs(R(0, 1) - R(1, 0)) > 1e-9 * (R(0, 0) + R(1, 1))) return Reason::kOutOfRange;
+  const Eigen::LLT<Eigen::Matrix2d> llt(R);
+  if (llt.info() != Eigen::Success) return Reason::kOutOfRange;
+  return std::nullopt;
+}
+
+void VehicleFilter::StartAt(const BoxMeasurement& z) {
+  ExtendedState& state = components_[0].state;
+  state.mean << z.x_m, z.y_m, WrapAngle(z.yaw_rad), 0.0, 0.0, 0.0, z.length_m, z.width_m;
+  state.covariance.setZero();
+  state.covariance.topLeftCorner<2, 2>() = z.position_covariance;
+  const auto set = [&state](int k, double sigma) { state.covariance(k, k) = sigma * sigma; };
+  set(kYaw, z.yaw_sigma_rad);
+  set(kSpeed, kInitialSpeedSigma_mps);
+  set(kYawRate, kInitialYawRateSigma_radps);
+  set(kAccel, kInitialAccelSigma_mps2);
+  set(ExtendedState::kLength, z.length_sigma_m);
+  set(ExtendedState::kWidth, z.width_sigma_m);
+  components_[0].weight = 1.0;
+  count_ = 1;
+  has_driven_ = true;
+}
+
+void VehicleFilter::AssumeSpeed(double speed_mps, double sigma_mps) {
+  ExtendedState& state = components_[0].state;
+  state.mean[kSpeed] = speed_mps;
+  state.covariance(kSpeed, kSpeed) = sigma_mps * sigma_mps;
+}
+
+std::optional<Likelihood> VehicleFilter::Evaluate(const BoxMeasurement& z) const {
+  const ExtendedState& state = best();
+  const Eigen::Vector2d y = Eigen::Vector2d(z.x_m, z.y_m) - state.mean.head<2>();
+  auto likelihood = LikelihoodOf(
+      y, Eigen::Matrix2d(state.covariance.topLeftCorner<2, 2>() + z.position_covariance));
+  if (!likelihood) return std::nullopt;
+  const auto variance = [&state](int k, double sigma) {
+    return state.covariance(k, k) + sigma * sigma;
+  };
+  likelihood->log_det += Surprise(AxisDifference(z.yaw_rad, state.mean[kYaw]),
+                                  variance(kYaw, z.yaw_sigma_rad), kAxisSpan_rad);
+  likelihood->log_det +=
+      Surprise(z.length_m - state.mean[ExtendedState::kLength],
+               variance(ExtendedState::kLength, z.length_sigma_m), kLengthSpan_m);
+  likelihood->log_det += Surprise(z.width_m - state.mean[ExtendedState::kWidth],
+                                  variance(ExtendedState::kWidth, z.width_sigma_m), kWidthSpan_m);
+  return likelihood;
+}
+
+bool VehicleFilter::Update(const BoxMeasurement& z) {
+  ExtendedState& state = components_[0].state;
+  const double turn = AxisDifference(z.yaw_rad, state.mean[kYaw]);
+  const bool has_axis = std::abs(turn) < kOddAxis_rad;
+  const int rows = has_axis ? 5 : 4;
+  Linearized model;
+  model.y.resize(rows);
+  model.H.setZero(rows, kStateSize);
+  model.E.setZero(rows, 2);
+  model.R.setZero(rows, rows);
+  model.y.head<2>() = Eigen::Vector2d(z.x_m, z.y_m) - state.mean.head<2>();
+  model.H(0, kX) = model.H(1, kY) = 1.0;
+  model.R.topLeftCorner<2, 2>() = z.position_covariance;
+  model.y[2] = z.length_m - state.mean[ExtendedState::kLength];
+  model.y[3] = z.width_m - state.mean[ExtendedState::kWidth];
+  model.E(2, 0) = model.E(3, 1) = 1.0;
+  model.R(2, 2) = z.length_sigma_m * z.length_sigma_m;
+  model.R(3, 3) = z.width_sigma_m * z.width_sigma_m;
+  if (has_axis) {
+    model.y[4] = turn;
+    model.H(4, kYaw) = 1.0;
+    model.R(4, 4) = z.yaw_sigma_rad * z.yaw_sigma_rad;
+  }
+  if (!UpdateExtended(model, state)) return false;
+  const double sigma_mps = std::sqrt(std::max(state.covariance(kSpeed, kSpeed), 0.0));
+  if (state.mean[kSpeed] < -(kBackwards_mps + kBackwardsSigmas * sigma_mps) &&
+      std::cos(z.yaw_rad - state.mean[kYaw]) < 0.0) {
+    FaceAbout(state);
+  }
+  return true;
+}
+
+TrackFilter TrackFilter::FromBox(const BoxMeasurement& z) {
+  TrackFilter filter;
+  filter.is_vehicle_ = true;
+  filter.vehicle_.StartAt(z);
+  filter.default_yaw_rad_ = WrapAngle(z.yaw_rad);
+  return filter;
+}
+
+std::optional<Likelihood> TrackFilter::Evaluate(const BoxMeasurement& z,
+                                                const FilterSettings& settings) const {
+  if (knows_direction()) return vehicle_.Evaluate(z);
+  Eigen::Matrix2d S = position_covariance() + z.position_covariance;
+  if (!is_vehicle_ && !settings.point_targets) {
+    S += kReflectionSigma_m * kReflectionSigma_m * Eigen::Matrix2d::Identity();
+  }
+  return LikelihoodOf(Eigen::Vector2d(Eigen::Vector2d(z.x_m, z.y_m) - position_O()), S);
+}
+
+bool TrackFilter::Update(const BoxMeasurement& z) {
+  if (knows_direction()) return vehicle_.Update(z);
+  // Only the velocity of what is no vehicle yet, or has no axis, is known better than the box.
+  const Eigen::Vector2d velocity = velocity_O();
+  const double variance = is_vehicle_ ? vehicle_.best().covariance(kSpeed, kSpeed)
+                                      : 0.5 * point_.covariance().bottomRightCorner<2, 2>().trace();
+  vehicle_.StartAt(z);
+  const double sigma_mps = std::sqrt(std::max(variance, 0.0));
+  if (sigma_mps < kInitialSpeedSigma_mps) {
+    vehicle_.AssumeSpeed(velocity.dot(Eigen::Vector2d(std::cos(z.yaw_rad), std::sin(z.yaw_rad))),
+                         sigma_mps);
+  }
+  is_vehicle_ = true;
+  return true;
+}
+
+}  // namespace v2vouch
