@@ -75,16 +75,18 @@ bool ParseLabel(const std::vector<std::string_view>& words, KittiLabel& label) {
 
 }  // namespace
 
-bool ReadKittiLabels(const std::string& path, std::vector<KittiLabel>& labels, std::string& error) {
+bool ReadKittiLabels(const std::string& path, std::vector<KittiLabel>& labels, std::string& error,
+                     bool with_regions) {
   const auto take = [&](const std::vector<std::string_view>& words) -> std::string {
     if (words.size() != 17 && words.size() != 18) {
       return "has " + std::to_string(words.size()) + " columns; a tracking label has 17";
     }
-    if (words[2] == "DontCare") return "";
+    const bool is_region = words[2] == "DontCare";
+    if (is_region && !with_regions) return "";
     KittiLabel label;
     if (!ParseLabel(words, label)) return "is no label";
     const bool is_solid = label.height_m > 0.0 && label.width_m > 0.0 && label.length_m > 0.0;
-    if (!is_solid) return "an object without size";
+    if (!is_solid && !is_region) return "an object without size";
     labels.push_back(std::move(label));
     return "";
   };

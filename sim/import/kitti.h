@@ -29,9 +29,11 @@ struct KittiLabel {
   double rotation_y_rad = 0.0;  ///< About y: 0 = facing right, -pi/2 = facing ahead.
 };
 
-/// Reads a tracking label file (17 columns, 18 with a score); ignore regions (DontCare) are left
-/// out. @return false with `error` naming file, line and fault.
-bool ReadKittiLabels(const std::string& path, std::vector<KittiLabel>& labels, std::string& error);
+/// Reads a tracking label file (17 columns, 18 with a score). @return false with `error` naming
+/// file, line and fault.
+/// @param with_regions ignore regions (DontCare), which have a 2-D box only, too.
+bool ReadKittiLabels(const std::string& path, std::vector<KittiLabel>& labels, std::string& error,
+                     bool with_regions = false);
 
 /// The left colour camera of a calibration file (line "P2:").
 struct KittiCamera {

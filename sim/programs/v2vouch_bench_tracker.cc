@@ -11,6 +11,7 @@
 #include "daemon/rim/io/std_streams.h"
 #include "daemon/rim/program/command_line.h"
 #include "sim/bench/bench.h"
+#include "sim/programs/bench_kitti.h"
 
 namespace {
 
@@ -25,6 +26,7 @@ constexpr const char* kExamples =
     "  v2vouch-bench-tracker scen_rot_50.csv.gz --json      figures of a recording\n"
     "  v2vouch-bench-tracker --generate 100 --seeds 1-20    twenty recordings of our own traffic\n"
     "  v2vouch-bench-tracker --generate 50 --seeds 7 --rotate 0.6 --out traffic.csv\n"
+    "  v2vouch-bench-tracker --kitti det_car label_02 seqmap.train --json  3-D CLEAR, sAMOTA\n"
     "\n"
     "FILE has the columns frame,t,kind,id,x,y,v,yaw,yaw_rate with kind T (truth) or D "
     "(detection);\n"
@@ -143,14 +145,34 @@ int main(int argc, char** argv) {
   app.add_option("--skip", settings.skipped_frames, "Frames not scored at the beginning")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
+  KittiRequest kitti;
+  auto* kitti_option =
+      app.add_option("--kitti", kitti.paths,
+                     "DET LABEL SEQMAP: 3-D detections (AB3DMOT's columns), labels, sequences")
+          ->expected(3)
+          ->excludes(file)
+          ->excludes(generate);
+  app.add_option("--poses", kitti.poses,
+                 "Of --kitti: folder of NNNN.txt with camera poses, 12 numbers a frame; without it "
+                 "the motion is that of labels that stand still")
+      ->needs(kitti_option);
+  app.add_option("--iou", kitti.iou, "Of --kitti: least 3-D IoU of a hit")
+      ->check(CLI::Range(0.01, 0.99))
+      ->capture_default_str();
+  app.add_option("--tracks", kitti.tracks, "Of --kitti: folder to write the tracks to")
+      ->needs(kitti_option);
   app.add_flag("--json", as_json, "Figures as JSON on standard output");
   app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; needs no network")
       ->check(v2vouch::CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-bench-tracker", argc, argv)) {
     return *code;
   }
+  if (kitti_option->count() > 0) {
+    kitti.as_json = as_json;
+    return RunKitti(kitti);
+  }
   if (file->count() + generate->count() != 1) {
-    std::fprintf(stderr, "v2vouch-bench-tracker: give FILE or --generate N\n");
+    std::fprintf(stderr, "v2vouch-bench-tracker: give FILE, --generate N or --kitti\n");
     return kUsage;
   }
   std::uint64_t first = 1, last = 1;
