@@ -10,7 +10,7 @@ namespace v2vouch::bench {
 
 /// What the tracker is told about a detector of boxes, and what it shows of its tracks. The
 /// defaults are PointRCNN's on KITTI, set on half of the development sequences
-/// (docs/tracking_peers.md).
+/// (docs/results/boxes.md).
 struct BoxSettings {
   double position_sigma_m = 0.12;       ///< Each axis, at the sensor ...
   double position_sigma_per_m = 0.002;  ///< ... and by range.
