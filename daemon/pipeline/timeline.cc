@@ -3,35 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
+#include "daemon/pipeline/event_rank.h"
 namespace v2vouch {
 namespace {
-
-template <class... Fs>
-struct Overloaded : Fs... {
-  using Fs::operator()...;
-};
-
-// Rank of the kinds of source at equal times: the ego's motion first, so that a frame of the same
-// instant finds it; claims last, so that they meet the newest tracks.
-enum Rank { kEgoRank, kGnssRank, kRadarRank, kCameraRank, kClaimRank };
-
-bool HasFrame(const TimelineInput& input) {
-  return std::holds_alternative<RadarScan>(input) ||
-         std::holds_alternative<CameraDetections>(input);
-}
-
-bool IsLocal(const TimelineInput& input) {
-  return HasFrame(input) || std::holds_alternative<EgoMotion>(input);
-}
-
-std::uint64_t Hash(std::string_view text, std::uint64_t seed) {  // FNV-1a.
-  std::uint64_t hash = 0xCBF29CE484222325ull ^ seed;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
-  return hash;
-}
 
 // A message no older than this against the agreed time is not late.
 constexpr double kOnTime_s = 0.1;
@@ -47,20 +23,6 @@ constexpr int kMostWaiting = 256;
 constexpr std::size_t kDeepestClaim = 256;
 constexpr std::size_t kDearestFrame = 16;
 constexpr std::size_t kEventsPerClaim = 112;
-
-void NameSource(const EventKey& key, Diagnostic& diagnostic) {
-  constexpr InputSource kSources[] = {InputSource::kEgoMotion, InputSource::kGnss,
-                                      InputSource::kRadar, InputSource::kCamera, InputSource::kBsm};
-  diagnostic.source = kSources[key.rank];
-  const bool is_sensor = key.rank == kRadarRank || key.rank == kCameraRank;
-  diagnostic.sensor = is_sensor ? static_cast<int>(key.channel) : 0;
-}
-
-bool InsertOnce(std::vector<std::uint64_t>& set, std::uint64_t value) {
-  if (std::find(set.begin(), set.end(), value) != set.end()) return false;
-  set.push_back(value);
-  return true;
-}
 
 }  // namespace
 
@@ -178,6 +140,30 @@ bool Timeline::IsTooDeep(const EventKey& claim) const {
   return false;
 }
 
+std::size_t Timeline::Restart(std::size_t at) const {
+  while (at > 0 && !events_[at - 1]->after) --at;
+  return at;
+}
+
+const Timeline::Checkpoint& Timeline::StateAt(std::size_t at) const {
+  return at > 0 ? *events_[at - 1]->after : *before_;
+}
+
+std::size_t Timeline::RestorePriority(std::size_t place, bool is_last) {
+  const EventKey& key = events_[place]->key;
+  std::size_t from = place;
+  if (!is_last || waiting_) {
+    const EventKey first = std::min(waiting_.value_or(key), key);
+    from = Restart(static_cast<std::size_t>(
+        std::ranges::find_if(events_, [&](const auto& event) { return event->key >= first; }) -
+        events_.begin()));
+    priority_ = StateAt(from).priority;
+  }
+  waiting_.reset();
+  waiting_claims_ = 0;
+  return from;
+}
+
 Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outputs& outputs) {
   const EventKey key = KeyOf(input);
   const bool is_local = IsLocal(input);
@@ -203,19 +189,12 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outp
   const bool is_last = later == events_.end();
   const bool is_last_of_local =
       std::none_of(later, events_.end(), [](const auto& other) { return IsLocal(other->input); });
-  const auto restart = [this](std::size_t at) {  // Behind the last checkpoint before it.
-    while (at > 0 && !events_[at - 1]->after) --at;
-    return at;
-  };
-  const auto state_at = [this](std::size_t at) -> const Checkpoint& {
-    return at > 0 ? *events_[at - 1]->after : *before_;
-  };
 
   // A claim or a fix cannot change LOCAL, so LOCAL is not even asked.
   Placement placement;
   if (is_local) {
-    if (!is_last_of_local) local_ = state_at(restart(place)).local;
-    placement.local_frames = RunLocal(is_last_of_local ? place : restart(place), outputs);
+    if (!is_last_of_local) local_ = StateAt(Restart(place)).local;
+    placement.local_frames = RunLocal(is_last_of_local ? place : Restart(place), outputs);
   }
   if (MayWait(place, is_last)) {
     if (key.rank == kClaimRank) {
@@ -224,17 +203,7 @@ Timeline::Placement Timeline::Insert(TimelineInput input, Timestamp agreed, Outp
     }
     return placement;
   }
-  std::size_t from = place;
-  if (!is_last || waiting_) {
-    const EventKey first = std::min(waiting_.value_or(key), key);
-    from = restart(static_cast<std::size_t>(
-        std::ranges::find_if(events_, [&](const auto& event) { return event->key >= first; }) -
-        events_.begin()));
-    priority_ = state_at(from).priority;
-  }
-  waiting_.reset();
-  waiting_claims_ = 0;
-  placement.v2v_events = RunPriority(from, outputs);
+  placement.v2v_events = RunPriority(RestorePriority(place, is_last), outputs);
 
   placement.has_frame = events_[place]->has_frame;
   placement.refusal = events_[place]->refusal;
@@ -253,105 +222,6 @@ bool Timeline::MayWait(std::size_t place, bool is_last) const {
   if (event.key.rank == kEgoRank) return waiting_ && is_last && !event.after;
   return event.key.rank == kClaimRank && (!is_last || waiting_) && waiting_claims_ < kMostWaiting &&
          !config_.v2v.message_verdicts;
-}
-
-int Timeline::RunLocal(std::size_t from, Outputs& outputs) {
-  int frames = 0;
-  for (std::size_t i = from; i < events_.size(); ++i) {
-    Event& event = *events_[i];
-    step_.Clear();
-    const auto keep = [&](std::optional<Reason> refusal) {
-      event.refusal = refusal;
-      event.has_frame = !refusal;
-      if (refusal) return step_.Refuse(*refusal, event.key.time);
-      for (const Reason failure : local_.failures()) step_.Refuse(failure, event.key.time);
-    };
-    std::visit(Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
-                          [&](const RadarScan& scan) {
-                            keep(local_.OnRadarScan(scan, event.radar, event.frame));
-                          },
-                          [&](const CameraDetections& boxes) {
-                            keep(local_.OnCameraDetections(boxes, event.frame));
-                          },
-                          [](const GnssFix&) {}, [](const TimedClaim&) {}},
-               event.input);
-    frames += HasFrame(event.input) ? 1 : 0;
-    if (event.after) event.after->local = local_;
-    EmitOnce(event, step_, outputs);
-  }
-  return frames;
-}
-
-int Timeline::RunPriority(std::size_t from, Outputs& outputs) {
-  int steps = 0;
-  for (std::size_t i = from; i < events_.size(); ++i) {
-    Event& event = *events_[i];
-    step_.Clear();
-    // The pose at an instant uses samples up to that instant only, so asking the newest odometry
-    // gives what a run in order would have given.
-    const auto ego = local_.odometry().StateAt(event.key.time);
-    const auto refused = [&] {  // By a fix or a claim, which refuse for one reason at most.
-      event.refusal.reset();
-      if (!step_.diagnostics.empty()) event.refusal = step_.diagnostics.front().reason;
-    };
-    std::visit(Overloaded{[](const EgoMotion&) {},
-                          [&](const GnssFix& fix) {
-                            const auto at_fix =
-                                local_.odometry().StateAt(priority_.alignment().FixTime(fix));
-                            if (at_fix) {
-                              priority_.OnFix(fix, *at_fix, step_);
-                            } else {
-                              step_.Refuse(Reason::kNoEgoMotion, event.key.time);
-                            }
-                            refused();
-                          },
-                          [&](const TimedClaim& timed) {
-                            if (ego) {
-                              if (timed.bias) {
-                                priority_.SetBiasPrior(timed.claim.sender, *timed.bias);
-                              }
-                              priority_.OnClaim(timed.claim, *ego, step_);
-                              newest_ = std::max(newest_, event.key.time);
-                            } else {
-                              step_.Refuse(Reason::kNoEgoMotion, event.key.time);
-                            }
-                            refused();
-                          },
-                          [&](const auto&) {
-                            if (!event.has_frame) return;
-                            priority_.OnFrame(event.frame, event.after->local.visibility(), step_);
-                            newest_ = std::max(newest_, event.key.time);
-                          }},
-               event.input);
-    event.residuals = priority_.TakeResiduals();
-    steps += std::holds_alternative<EgoMotion>(event.input) ? 0 : 1;
-    if (event.after) event.after->priority = priority_;
-    EmitOnce(event, step_, outputs);
-  }
-  return steps;
-}
-
-void Timeline::EmitOnce(Event& event, const Outputs& step, Outputs& outputs) {
-  for (const Diagnostic& diagnostic : step.diagnostics) {
-    const auto hash = Hash(ReasonName(diagnostic.reason), 0);
-    if (!InsertOnce(event.emitted, hash)) continue;
-    outputs.diagnostics.push_back(diagnostic);
-    NameSource(event.key, outputs.diagnostics.back());
-  }
-  // A late frame may move the same verdict to another moment, or let another check come first.
-  const double buffer_s = config_.timeline.replay_buffer_s;
-  std::erase_if(reported_, [&](const Reported& old) {
-    return ToSeconds(newest_ - old.stamp) > 2.0 * buffer_s;
-  });
-  for (const MisbehaviorReport& report : step.reports) {
-    const bool is_known = std::ranges::any_of(reported_, [&](const Reported& old) {
-      return old.sender == report.sender && old.verdict == report.verdict &&
-             std::abs(ToSeconds(report.stamp - old.stamp)) <= buffer_s;
-    });
-    if (is_known) continue;
-    reported_.push_back({report.stamp, report.sender, report.verdict});
-    outputs.reports.push_back(report);
-  }
 }
 
 void Timeline::Trim() {

@@ -128,6 +128,11 @@ class Timeline {
   [[nodiscard]] bool IsTooDeep(const EventKey& claim) const;
   /// Whether the V2V side may wait with event `place`, which was just put in.
   [[nodiscard]] bool MayWait(std::size_t place, bool is_last) const;
+  /// First event behind the last checkpoint before event `at`; and the state there.
+  [[nodiscard]] std::size_t Restart(std::size_t at) const;
+  [[nodiscard]] const Checkpoint& StateAt(std::size_t at) const;
+  /// Sets the V2V side back so that event `place` and all that wait can be run. @return from where.
+  std::size_t RestorePriority(std::size_t place, bool is_last);
   void EmitOnce(Event& event, const Outputs& step, Outputs& outputs);
   void Trim();
 

@@ -66,15 +66,7 @@ class Scorer {
     };
     const ReceivedList* list = NewestBy(log_.lists[Index(score_.kind)], t);
     const std::vector<PlacedTrack> tracks = PlaceTracks(log_, list, score_.kind, t);
-    std::vector<PlacedTruth> truths;
-    for (std::size_t o = 0; o < log_.truth.objects.size(); ++o) {
-      const TruthObject& object = log_.truth.objects[o];
-      if (!IsInScope(object, score_.kind, against_)) continue;
-      const auto motion = object.motion.At(t);
-      if (!motion) continue;
-      truths.push_back({o, motion->position(), inside(motion->position()),
-                        TrueSighting(*object.motion.InForce(t), *motion, X_WB, log_.specs)});
-    }
+    const std::vector<PlacedTruth> truths = PlaceTruths(t, X_WB, inside);
     truth_points_.clear();
     track_points_.clear();
     for (const auto& truth : truths) truth_points_.push_back(truth.p_W);
@@ -169,6 +161,20 @@ class Scorer {
   }
 
  private:
+  template <class Inside>
+  [[nodiscard]] std::vector<PlacedTruth> PlaceTruths(Timestamp t, const Pose<World, Body>& X_WB,
+                                                     const Inside& inside) const {
+    std::vector<PlacedTruth> truths;
+    for (std::size_t o = 0; o < log_.truth.objects.size(); ++o) {
+      const TruthObject& object = log_.truth.objects[o];
+      if (!IsInScope(object, score_.kind, against_)) continue;
+      const auto motion = object.motion.At(t);
+      if (!motion) continue;
+      truths.push_back({o, motion->position(), inside(motion->position()),
+                        TrueSighting(*object.motion.InForce(t), *motion, X_WB, log_.specs)});
+    }
+    return truths;
+  }
   Anees& AneesOf(Sighting sighting) {
     return sighting == Sighting::kVisible  ? score_.visible
            : sighting == Sighting::kHidden ? score_.hidden

@@ -4,146 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <span>
 
 #include "daemon/common/assignment/assignment.h"
 #include "daemon/common/base/check.h"
 #include "sim/metrics/gospa.h"
+#include "sim/metrics/trajectory_problem.h"
 
 namespace v2vouch::evaluation {
 namespace {
 
-/// Per truth of the cluster its track's position in the cluster, or -1.
-using Matching = std::vector<int>;
-
-bool Exists(const Eigen::Vector2d& p) { return !std::isnan(p.x()); }
-
-struct Costs {
-  double pair_max = 0.0;  // c^p
-  double lone = 0.0;      // c^p / 2
-  double full = 0.0;      // gamma^p
-};
-
-/// Everything a cluster needs: its members and d^p of every pair it may use at every step.
-struct Cluster {
-  std::vector<std::size_t> truths, tracks;
-  std::vector<char> allowed;  // truths x tracks: ever closer than c
-  std::vector<int> present;   // Tracks that exist, per step.
-};
-
-class Problem {
- public:
-  Problem(const std::vector<Trajectory>& truths, const std::vector<Trajectory>& tracks,
-          const TrajectoryGospaParameters& parameters)
-      : truths_(truths), tracks_(tracks), parameters_(parameters) {
-    const double c_pow = std::pow(parameters.cutoff_m, parameters.order);
-    costs_ = {c_pow, c_pow / 2.0, std::pow(parameters.switch_m, parameters.order)};
-    steps_ = truths.empty() ? (tracks.empty() ? 0 : tracks.front().size()) : truths.front().size();
-  }
-
-  [[nodiscard]] std::size_t steps() const { return steps_; }
-  [[nodiscard]] const Costs& costs() const { return costs_; }
-
-  /// d^p of a pair with both present, otherwise infinity.
-  [[nodiscard]] double PairPower(std::size_t truth, std::size_t track, std::size_t t) const {
-    const Eigen::Vector2d& x = truths_[truth][t];
-    const Eigen::Vector2d& y = tracks_[track][t];
-    if (!Exists(x) || !Exists(y)) return kForbidden;
-    const Eigen::Vector2d d = (x - y).cwiseAbs();
-    if (parameters_.base == BaseDistance::kEuclidean) return std::pow(d.norm(), parameters_.order);
-    return std::pow(d.x(), parameters_.order) + std::pow(d.y(), parameters_.order);
-  }
-  [[nodiscard]] bool TruthExists(std::size_t truth, std::size_t t) const {
-    return Exists(truths_[truth][t]);
-  }
-  [[nodiscard]] bool TrackExists(std::size_t track, std::size_t t) const {
-    return Exists(tracks_[track][t]);
-  }
-
-  /// Connected components of the "ever closer than c" graph. Members without a partner are in no
-  /// cluster: they are missed or false at every step they exist.
-  [[nodiscard]] std::vector<Cluster> Clusters() const {
-    const std::size_t n = truths_.size();
-    const std::size_t m = tracks_.size();
-    std::vector<char> close(n * m, 0);
-    std::vector<std::size_t> parent(n + m);
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto root = [&](std::size_t v) {
-      while (parent[v] != v) v = parent[v] = parent[parent[v]];
-      return v;
-    };
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < m; ++j) {
-        for (std::size_t t = 0; t < steps_ && !close[i * m + j]; ++t) {
-          if (PairPower(i, j, t) < costs_.pair_max) close[i * m + j] = 1;
-        }
-        if (close[i * m + j]) parent[root(n + j)] = root(i);
-      }
-    }
-    std::vector<Cluster> clusters;
-    for (std::size_t r = 0; r < n + m; ++r) {
-      if (root(r) != r) continue;
-      Cluster cluster;
-      for (std::size_t i = 0; i < n; ++i) {
-        if (root(i) == r) cluster.truths.push_back(i);
-      }
-      for (std::size_t j = 0; j < m; ++j) {
-        if (root(n + j) == r) cluster.tracks.push_back(j);
-      }
-      for (const std::size_t i : cluster.truths) {
-        for (const std::size_t j : cluster.tracks) cluster.allowed.push_back(close[i * m + j]);
-      }
-      cluster.present.assign(steps_, 0);
-      for (const std::size_t j : cluster.tracks) {
-        for (std::size_t t = 0; t < steps_; ++t) cluster.present[t] += TrackExists(j, t) ? 1 : 0;
-      }
-      clusters.push_back(std::move(cluster));
-    }
-    return clusters;
-  }
-
-  /// Adds one step of a matching to `sum` and returns its cost.
-  double AddStep(const Cluster& cluster, const Matching& matching, std::size_t t,
-                 TrajectoryGospaResult* sum) const {
-    double localisation = 0.0;
-    int missed = 0;
-    int false_tracks = cluster.present[t];
-    for (std::size_t a = 0; a < cluster.truths.size(); ++a) {
-      const bool exists = TruthExists(cluster.truths[a], t);
-      missed += exists ? 1 : 0;
-      if (!exists || matching[a] < 0) continue;
-      const double d =
-          PairPower(cluster.truths[a], cluster.tracks[static_cast<std::size_t>(matching[a])], t);
-      if (!(d < costs_.pair_max)) continue;
-      localisation += d;
-      --missed;
-      --false_tracks;
-    }
-    if (sum != nullptr) {
-      sum->localisation_pow += localisation;
-      sum->missed_pow += missed * costs_.lone;
-      sum->false_pow += false_tracks * costs_.lone;
-    }
-    return localisation + (missed + false_tracks) * costs_.lone;
-  }
-
-  [[nodiscard]] double SwitchCost(const Matching& from, const Matching& to) const {
-    double cost = 0.0;
-    for (std::size_t a = 0; a < from.size(); ++a) {
-      if (from[a] == to[a]) continue;
-      cost += from[a] >= 0 && to[a] >= 0 ? costs_.full : costs_.full / 2.0;
-    }
-    return cost;
-  }
-
- private:
-  const std::vector<Trajectory>& truths_;
-  const std::vector<Trajectory>& tracks_;
-  const TrajectoryGospaParameters& parameters_;
-  Costs costs_;
-  std::size_t steps_ = 0;
-};
-
+using tgospa::Cluster;
+using tgospa::Costs;
+using tgospa::Matching;
+using tgospa::Problem;
 /// All partial matchings over the allowed pairs, in lexicographic order; stops past `limit`.
 void Enumerate(const Cluster& cluster, std::size_t limit, Matching& current, std::size_t a,
                std::vector<char>& used, std::vector<Matching>& out) {
@@ -304,6 +177,38 @@ class Beam {
   std::vector<std::size_t> columns_;
 };
 
+// What a pair costs at step t relative to both staying alone; never above 0.
+double GainOf(const Problem& problem, std::size_t truth, std::size_t track, std::size_t t) {
+  const double d = problem.PairPower(truth, track, t);
+  return d < problem.costs().pair_max ? d - problem.costs().pair_max : 0.0;
+}
+
+// The tracks that other truths than `a` hold.
+void MarkTaken(const Matching& matching, std::size_t a, std::vector<char>& taken) {
+  std::fill(taken.begin(), taken.end(), 0);
+  for (std::size_t other = 0; other < matching.size(); ++other) {
+    if (other != a && matching[other] >= 0) taken[static_cast<std::size_t>(matching[other])] = 1;
+  }
+}
+
+// What truth `a` costs with its matchings in `path`, relative to staying alone throughout.
+double CostOf(const Problem& problem, const Cluster& cluster, const std::vector<Matching>& path,
+              std::size_t a) {
+  const Costs& costs = problem.costs();
+  double old_cost = 0.0;
+  for (std::size_t t = 0; t < path.size(); ++t) {
+    const int b = path[t][a];
+    if (b >= 0) {
+      const std::size_t track = cluster.tracks[static_cast<std::size_t>(b)];
+      const double d = problem.PairPower(cluster.truths[a], track, t);
+      if (d < costs.pair_max) old_cost += d - costs.pair_max;
+    }
+    if (t > 0 && path[t - 1][a] != b) {
+      old_cost += path[t - 1][a] >= 0 && b >= 0 ? costs.full : costs.full / 2.0;
+    }
+  }
+  return old_cost;
+}
 /// Improves a path truth by truth: with the others' matchings fixed, one truth's best sequence over
 /// the tracks they leave free is a small shortest path. The beam looks one step ahead only; this
 /// looks over the whole run. Never makes the path dearer.
@@ -314,16 +219,12 @@ void Refine(const Problem& problem, const Cluster& cluster, std::vector<Matching
   std::vector<double> best(m + 1), next(m + 1);  // Index m: no track.
   std::vector<std::size_t> back(path.size() * (m + 1));
   std::vector<char> taken(m);
-  const auto to_index = [&](int track) { return track < 0 ? m : static_cast<std::size_t>(track); };
 
   for (int round = 0; round < kRounds; ++round) {
     bool has_changed = false;
     for (std::size_t a = 0; a < cluster.truths.size(); ++a) {
       for (std::size_t t = 0; t < path.size(); ++t) {
-        std::fill(taken.begin(), taken.end(), 0);
-        for (std::size_t other = 0; other < path[t].size(); ++other) {
-          if (other != a && path[t][other] >= 0) taken[to_index(path[t][other])] = 1;
-        }
+        MarkTaken(path[t], a, taken);
         // From the cheapest state by a full switch, from none by half a one, or no change.
         std::size_t cheapest = m;
         for (std::size_t b = 0; b < m; ++b) {
@@ -332,12 +233,7 @@ void Refine(const Problem& problem, const Cluster& cluster, std::vector<Matching
         for (std::size_t b = 0; b <= m; ++b) {
           double value = kForbidden;
           if (b == m || (!taken[b] && cluster.allowed[a * m + b])) {
-            double step = 0.0;
-            if (b < m) {
-              const double d = problem.PairPower(cluster.truths[a], cluster.tracks[b], t);
-              if (d < costs.pair_max) step = d - costs.pair_max;
-            }
-            value = step;
+            value = b < m ? GainOf(problem, cluster.truths[a], cluster.tracks[b], t) : 0.0;
             if (t > 0) {
               std::size_t from = b;
               double before = best[b];
@@ -360,17 +256,7 @@ void Refine(const Problem& problem, const Cluster& cluster, std::vector<Matching
       }
       auto state =
           static_cast<std::size_t>(std::min_element(best.begin(), best.end()) - best.begin());
-      double old_cost = 0.0;
-      for (std::size_t t = 0; t < path.size(); ++t) {
-        const int b = path[t][a];
-        if (b >= 0) {
-          const double d = problem.PairPower(cluster.truths[a], cluster.tracks[to_index(b)], t);
-          if (d < costs.pair_max) old_cost += d - costs.pair_max;
-        }
-        if (t > 0 && path[t - 1][a] != b) {
-          old_cost += path[t - 1][a] >= 0 && b >= 0 ? costs.full : costs.full / 2.0;
-        }
-      }
+      const double old_cost = CostOf(problem, cluster, path, a);
       if (!(best[state] < old_cost - 1e-9)) continue;
       has_changed = true;
       for (std::size_t t = path.size(); t-- > 0;) {

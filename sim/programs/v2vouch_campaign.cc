@@ -183,11 +183,7 @@ fs::path OwnFolder() {
   return error ? fs::path(".") : own.parent_path();
 }
 
-/// @return exit code, or -1 to go on and report.
-int RunCampaign(const Options& options) {
-  std::vector<std::string> problems;
-  const auto jobs = PlannedJobs(options, problems);
-  const fs::path out = fs::absolute(options.out);
+RunnerSettings SettingsOf(const Options& options, const fs::path& out) {
   RunnerSettings settings;
   settings.programs = OwnFolder();
   settings.folder = out;
@@ -196,6 +192,25 @@ int RunCampaign(const Options& options) {
   settings.with_message_checks = options.field;
   settings.keeps_logs = options.keep;
   settings.at_a_time = options.jobs;
+  return settings;
+}
+
+// Whether the daemon takes the configuration, or every single run would say it.
+bool IsUsable(const std::string& config, const RunnerSettings& settings, Children& children) {
+  const ChildResult check = children.Run(
+      {(settings.programs / "v2vouchd").string(), "--config", config, "--print-config"},
+      settings.scratch / ("check." + std::to_string(getpid())));
+  if (!check.has_started || check.exit_code == 0) return true;
+  std::fputs(check.err.c_str(), stderr);
+  return false;
+}
+
+/// @return exit code, or -1 to go on and report.
+int RunCampaign(const Options& options) {
+  std::vector<std::string> problems;
+  const auto jobs = PlannedJobs(options, problems);
+  const fs::path out = fs::absolute(options.out);
+  RunnerSettings settings = SettingsOf(options, out);
   std::error_code error;
   if (problems.empty()) {
     for (const fs::path& folder : {out / "runs", settings.scratch}) {
@@ -205,14 +220,9 @@ int RunCampaign(const Options& options) {
   }
   Children children;
   std::string problem;
-  if (problems.empty() && !options.config.empty()) {  // Or every single run would say it.
-    const ChildResult check = children.Run(
-        {(settings.programs / "v2vouchd").string(), "--config", options.config, "--print-config"},
-        settings.scratch / ("check." + std::to_string(getpid())));
-    if (check.has_started && check.exit_code != 0) {
-      std::fputs(check.err.c_str(), stderr);
-      problems.push_back(options.config + ": cannot be used");
-    }
+  if (problems.empty() && !options.config.empty() &&
+      !IsUsable(options.config, settings, children)) {
+    problems.push_back(options.config + ": cannot be used");
   }
   if (problems.empty()) {
     settings.config = out / "vehicle.yaml";

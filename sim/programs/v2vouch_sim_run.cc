@@ -126,6 +126,28 @@ std::unique_ptr<Sink> OpenSink(const RunOptions& options, std::string& error) {
 
 }  // namespace
 
+struct Figures {
+  std::map<std::string, std::int64_t> counts;  // By channel.
+  std::int64_t unsent = 0;
+  double simulated_s = 0.0;
+  double wall_s = 0.0;
+};
+
+void PrintFigures(const std::string& scenario, const RunOptions& options, const Figures& figures) {
+  const auto& [counts, unsent, simulated, wall] = figures;
+  if (options.json) {
+    const nlohmann::ordered_json report = {{"scenario", scenario}, {"seed", options.seed},
+                                           {"seconds", simulated}, {"wall_seconds", wall},
+                                           {"events", counts},     {"unsent", unsent}};
+    std::printf("%s\n", report.dump().c_str());
+  } else {
+    std::printf("%s, seed %llu: %.1f s in %.2f s\n", scenario.c_str(),
+                static_cast<unsigned long long>(options.seed), simulated, wall);
+    for (const auto& [channel, count] : counts) {
+      std::printf("  %-24s %8lld\n", channel.c_str(), static_cast<long long>(count));
+    }
+  }
+}
 int Run(const RunOptions& options) {
   Scenario scenario;
   std::vector<std::string> problems;
@@ -170,19 +192,8 @@ int Run(const RunOptions& options) {
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
-  const double simulated = simulation.progress() * scenario.duration_s;
-  if (options.json) {
-    const nlohmann::ordered_json report = {{"scenario", scenario.name}, {"seed", options.seed},
-                                           {"seconds", simulated},      {"wall_seconds", wall},
-                                           {"events", counts},          {"unsent", unsent}};
-    std::printf("%s\n", report.dump().c_str());
-  } else {
-    std::printf("%s, seed %llu: %.1f s in %.2f s\n", scenario.name.c_str(),
-                static_cast<unsigned long long>(options.seed), simulated, wall);
-    for (const auto& [channel, count] : counts) {
-      std::printf("  %-24s %8lld\n", channel.c_str(), static_cast<long long>(count));
-    }
-  }
+  PrintFigures(scenario.name, options,
+               {counts, unsent, simulation.progress() * scenario.duration_s, wall});
   if (!finished) Complain(error);
   if (options.live && unsent > 0) Complain(std::to_string(unsent) + " messages could not be sent");
   return finished && unsent == 0 ? 0 : kFailed;

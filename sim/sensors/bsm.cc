@@ -226,7 +226,6 @@ std::optional<Message> BsmSender::NextMessage() {
 
   // Errors move on with every message, sent or lost, so that loss changes nothing else.
   const Draws draws = DrawErrors(number, dt);
-
   const Snapshot snapshot = world_.At(time);
   Message message;
   Statement& said = message.said;

@@ -62,6 +62,15 @@ EgoGnssSimulator::EgoGnssSimulator(const World& world, std::uint64_t seed)
       plane_(PlaneOf(world.scenario().origin)),
       error_(world.scenario().gnss.error, 1.0, SubjectRandom(seed, "ego gnss", {})) {}
 
+void SetCovariance(const GnssErrorSpec& e, gnss_fix_t& fix) {
+  const double variance = e.bias_sigma_m * e.bias_sigma_m + e.markov_sigma_m * e.markov_sigma_m +
+                          e.white_sigma_m * e.white_sigma_m;
+  std::fill(std::begin(fix.covariance_enu_m2), std::end(fix.covariance_enu_m2), 0.0);
+  fix.covariance_enu_m2[0] = std::max(1e-6, variance);
+  fix.covariance_enu_m2[4] = std::max(1e-6, variance);
+  fix.covariance_enu_m2[8] = std::max(1e-6, e.height_sigma_m * e.height_sigma_m + variance);
+}
+
 void EgoGnssSimulator::Measure(const Snapshot& snapshot, std::int64_t seq, double dt_s,
                                gnss_fix_t& fix) {
   const EgoGnssSpec& spec = world_.scenario().gnss;
@@ -85,13 +94,7 @@ void EgoGnssSimulator::Measure(const Snapshot& snapshot, std::int64_t seq, doubl
   fix.latitude_rad = FromDegrees(place.latitude_deg);
   fix.longitude_rad = FromDegrees(place.longitude_deg);
   fix.altitude_m = place.height_m;
-  const GnssErrorSpec& e = spec.error;
-  const double variance = e.bias_sigma_m * e.bias_sigma_m + e.markov_sigma_m * e.markov_sigma_m +
-                          e.white_sigma_m * e.white_sigma_m;
-  std::fill(std::begin(fix.covariance_enu_m2), std::end(fix.covariance_enu_m2), 0.0);
-  fix.covariance_enu_m2[0] = std::max(1e-6, variance);
-  fix.covariance_enu_m2[4] = std::max(1e-6, variance);
-  fix.covariance_enu_m2[8] = std::max(1e-6, e.height_sigma_m * e.height_sigma_m + variance);
+  SetCovariance(spec.error, fix);
   const double heading_noise = random.Normal(0.0, spec.heading_sigma_rad);
   const double east_noise = random.Normal(0.0, spec.velocity_sigma_mps);
   const double north_noise = random.Normal(0.0, spec.velocity_sigma_mps);

@@ -155,6 +155,8 @@ class VisibilityMap {
     double farthest_m = 0.0;
   };
   using InTheWay = std::array<Silhouette, 12>;  // More boxes in one line hide no more.
+  struct Query;                                 // One sensor's question for one footprint.
+  struct Rays;
 
   void AddSensor(const Sensor& sensor);
   [[nodiscard]] const Sensor& RadarAt(int index) const;
@@ -166,6 +168,10 @@ class VisibilityMap {
                                      double limit_cm) const;
   void RebuildBins(Viewpoint& viewpoint) const;
   [[nodiscard]] SensorView See(const Sensor& sensor, const Box& footprint) const;
+  [[nodiscard]] Rays CastRays(const Query& query) const;
+  [[nodiscard]] double CoverOf(const Query& query, double a, const Eigen::Vector2d& ray) const;
+  [[nodiscard]] static SensorView Conclude(const Silhouette& target, const Rays& rays,
+                                           bool stays_in_range);
 
   VisibilityConfig config_;
   std::size_t radar_count_ = 0;

@@ -63,6 +63,15 @@ void SetAccuracy(const gnss_fix_t& fix, BsmCore& core) {
 
 std::int32_t Transmission(int gear) { return gear >= 0 && gear <= 3 ? gear : 7; }
 
+void SetMotion(const ego_motion_t& motion, BsmCore& core) {
+  const double yaw_rate_radps = motion.yaw_rate_radps;
+  core.transmission = Transmission(motion.gear);
+  core.accel_long = Raw(motion.accel_long_mps2, 0.01, 2001);
+  core.accel_lat = Raw(-motion.accel_lat_mps2, 0.01, 2001);
+  core.accel_yaw = Raw(-yaw_rate_radps * 180.0 / kPi, 0.01, 0);
+  if (std::abs(yaw_rate_radps * 180.0 / kPi) < 0.005) core.accel_yaw = 0;
+}
+
 }  // namespace
 
 OwnBsm::OwnBsm(OwnVehicle vehicle, std::uint64_t seed) : vehicle_(vehicle), rng_(seed) {}
@@ -149,11 +158,7 @@ std::optional<Bsm> OwnBsm::Make(std::int64_t utime) {
     core.heading = Heading(*course_rad_ + turn_rad + (speed_mps < 0.0 ? kPi : 0.0));
   }
   if (has_motion) {
-    core.transmission = Transmission(motion_->gear);
-    core.accel_long = Raw(motion_->accel_long_mps2, 0.01, 2001);
-    core.accel_lat = Raw(-motion_->accel_lat_mps2, 0.01, 2001);
-    core.accel_yaw = Raw(-yaw_rate_radps * 180.0 / kPi, 0.01, 0);
-    if (std::abs(yaw_rate_radps * 180.0 / kPi) < 0.005) core.accel_yaw = 0;
+    SetMotion(*motion_, core);
   }
   core.length = Raw(vehicle_.length_m > 0.0 ? vehicle_.length_m : nan, 0.01, 0);
   core.width = Raw(vehicle_.width_m > 0.0 ? vehicle_.width_m : nan, 0.01, 0);

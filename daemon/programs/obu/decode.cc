@@ -101,6 +101,20 @@ bool LoadAnchors(const std::string& roots, const std::string& issuers, TrustAnch
   return has_roots && has_issuers;
 }
 
+void Read(const Captured& captured, const DatagramOptions& options, std::span<std::uint8_t> scratch,
+          DatagramReport& report) {
+  if (captured.fault) {
+    report.refused = captured.fault;
+    return;
+  }
+  if (captured.link_type < 0) {
+    ReadDatagram(captured.bytes, options, scratch, report.datagram);
+  } else {
+    ReadPacket(captured.link_type, captured.bytes, options, scratch, report.datagram);
+  }
+  report.refused = report.datagram.fault;
+}
+
 int Decode(const DecodeOptions& options, TrustAnchors anchors) {
   std::string error;
   const auto file = CaptureFile::Open(options.path, options.join_lines, error);
@@ -120,17 +134,7 @@ int Decode(const DecodeOptions& options, TrustAnchors anchors) {
     report.number = totals.packets + 1;
     report.captured = *captured;
     has_text_lines = has_text_lines || captured->line > 0;
-    if (captured->fault) {
-      report.refused = captured->fault;
-    } else {
-      if (captured->link_type < 0) {
-        ReadDatagram(captured->bytes, datagram_options, scratch, report.datagram);
-      } else {
-        ReadPacket(captured->link_type, captured->bytes, datagram_options, scratch,
-                   report.datagram);
-      }
-      report.refused = report.datagram.fault;
-    }
+    Read(*captured, datagram_options, scratch, report);
     Reception reception{captured->utime, report.number, {}, 0};
     if (report.datagram.dot2) {
       report.judgement = verifier.Judge(*report.datagram.dot2, captured->utime);

@@ -120,6 +120,15 @@ void Step(const LogEvent& event, Engine& engine, Outbox& outbox, ChannelFigures&
   Note(engine.TakeNoticeChanges(), result.notices);
 }
 
+void TakeOutcome(const Engine& engine, const DaemonConfig& config, ReplayResult& result) {
+  result.accepted = engine.accepted();
+  result.refused = engine.refusals();
+  result.verdict = JudgeChannels(result.channels, result.lists, config);
+  result.refusal_details = engine.refusal_details();
+  result.digest_local = engine.digest_local();
+  result.digest_priority = engine.digest_priority();
+}
+
 }  // namespace
 
 bool Replay(const std::string& in, const std::string& out, const DaemonConfig& given,
@@ -175,12 +184,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
   result.log_seconds = ToSeconds(last - first);
   result.damaged = reader->damaged();
   result.unseen_pictures = unseen.count();
-  result.accepted = engine.accepted();
-  result.refused = engine.refusals();
-  result.verdict = JudgeChannels(result.channels, result.lists, config);
-  result.refusal_details = engine.refusal_details();
-  result.digest_local = engine.digest_local();
-  result.digest_priority = engine.digest_priority();
+  TakeOutcome(engine, config, result);
   return !writer || writer->Close(error);
 }
 

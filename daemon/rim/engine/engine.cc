@@ -5,6 +5,7 @@
 
 #include "daemon/rim/engine/calibration_in_force.h"
 #include "daemon/rim/wire/output_encoder.h"
+#include "daemon/rim/wire/status_encoder.h"
 #include "daemon/v2v/gps_bias/gps_bias.h"
 
 namespace v2vouch {

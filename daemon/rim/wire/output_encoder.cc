@@ -6,11 +6,11 @@
 #include "daemon/common/base/angle.h"
 #include "daemon/common/data/object_class.h"
 #include "daemon/rim/wire/codec.h"
+#include "daemon/rim/wire/output_fields.h"
 #include "daemon/rim/wire/sensor_conversion.h"
 #include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_detections_t.hpp"
-#include "v2vouch/daemon_status_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
 #include "v2vouch/text_t.hpp"
 
@@ -19,25 +19,7 @@ namespace {
 
 // Below the decoder's limit, so that nothing of ours is refused by a reader of ours.
 constexpr std::size_t kMaxTextBytes = (1u << 20) - 1;
-constexpr std::size_t kMaxNameBytes = 255;
 constexpr std::size_t kMaxTracks = 8192;
-constexpr std::size_t kMaxSenders = 256;
-
-template <class Count, class Vector>
-void SetCount(Count& count, const Vector& vector) {
-  count = static_cast<Count>(vector.size());
-}
-
-std::int64_t MicrosOrNever(const std::optional<Timestamp>& stamp) {
-  return stamp ? ToMicros(*stamp) : 0;
-}
-
-void PutSender(SenderId sender, std::uint8_t* octets) {
-  for (int i = 0; i < 4; ++i) octets[i] = static_cast<std::uint8_t>(sender >> (24 - 8 * i));
-}
-
-std::string Name(std::string_view text) { return std::string(text.substr(0, kMaxNameBytes)); }
-
 void PutKinematics(const KinematicState& state, const Pose<Odometry, Body>& X_OB, track_t& to) {
   const StateVector& x = state.mean;
   const Point<Body> p_BT = X_OB.Inverse() * Point<Odometry>{x[kX], x[kY]};
@@ -90,33 +72,6 @@ track_t ToWire(const PublishedTrack& from, const Pose<Odometry, Body>& X_OB) {
   to.longitude_rad = from.position ? from.position->longitude_rad : kNaN;
   to.bias_east_m = from.bias_east_m;
   to.bias_north_m = from.bias_north_m;
-  return to;
-}
-
-void PutBias(const std::optional<BiasEstimate>& bias, double& east_m, double& north_m,
-             double (&covariance_m2)[4]) {
-  east_m = bias ? bias->mean_en.x() : kNaN;
-  north_m = bias ? bias->mean_en.y() : kNaN;
-  for (int i = 0; i < 4; ++i) covariance_m2[i] = bias ? bias->covariance(i / 2, i % 2) : kNaN;
-}
-
-gps_bias_t ToWire(const BiasReport& report) {
-  gps_bias_t to{};
-  to.utime = MicrosOrNever(report.solved_at);
-  PutBias(report.common, to.common_east_m, to.common_north_m, to.common_covariance_m2);
-  const std::size_t count = std::min(report.senders.size(), kMaxSenders);
-  for (std::size_t i = 0; i < count; ++i) {
-    const BiasReport::Sender& from = report.senders[i];
-    sender_bias_t sender{};
-    PutSender(from.sender, sender.v2v_id);
-    sender.verdict = static_cast<std::int8_t>(from.verdict);
-    const bool has_bias = from.verdict != BiasVerdict::kTooFew;
-    PutBias(has_bias ? std::optional(from.bias) : std::nullopt, sender.east_m, sender.north_m,
-            sender.covariance_m2);
-    if (has_bias) ++(from.verdict == BiasVerdict::kUsed ? to.num_used : to.num_quarantined);
-    to.senders.push_back(sender);
-  }
-  SetCount(to.num_senders, to.senders);
   return to;
 }
 
@@ -202,88 +157,6 @@ void EncodeDetections(const CameraDetections& detections, const CameraConfig& ca
     to.boxes.push_back(box);
   }
   SetCount(to.num_boxes, to.boxes);
-  Encode(to, bytes);
-}
-
-void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes) {
-  daemon_status_t to{};
-  to.utime = ToMicros(status.stamp);
-  to.seq = status.seq;
-  to.version = Name(status.version);
-  to.calibration = Name(status.calibration);
-  for (const InputStatus& from : status.inputs) {
-    input_status_t input{};
-    input.channel = Name(from.channel);
-    input.received = from.received;
-    input.accepted = from.accepted;
-    input.gaps = from.gaps;
-    input.rate_hz = from.rate_hz;
-    input.age_s = from.age_s;
-    input.is_silent = from.is_silent ? 1 : 0;
-    to.inputs.push_back(input);
-  }
-  SetCount(to.num_inputs, to.inputs);
-  for (std::size_t i = 0; i < kReasonCount; ++i) {
-    if (status.refusals[i] == 0) continue;
-    count_t count{};
-    count.name = Name(ReasonName(static_cast<Reason>(i)));
-    count.count = static_cast<std::int64_t>(status.refusals[i]);
-    to.refusals.push_back(count);
-  }
-  SetCount(to.num_refusals, to.refusals);
-  for (const RefusalDetail& from : status.refusal_details) {
-    refusal_t detail{};
-    detail.channel = Name(from.channel);
-    detail.reason = Name(ReasonName(from.refusal.reason));
-    detail.field = Name(from.FieldText());
-    detail.count = static_cast<std::int64_t>(from.count);
-    to.refusal_details.push_back(detail);
-  }
-  SetCount(to.num_refusal_details, to.refusal_details);
-  to.queue_drops_own = status.queue_drops_own;
-  to.queue_drops_bsm = status.queue_drops_bsm;
-  to.kernel_drops = status.kernel_drops;
-  to.receive_buffer_bytes = status.receive_buffer_bytes;
-  for (const StageLatency& from : status.latencies) {
-    stage_latency_t latency{};
-    latency.stage = Name(from.stage);
-    latency.p50_us = from.p50_us;
-    latency.p99_us = from.p99_us;
-    latency.max_us = from.max_us;
-    to.latencies.push_back(latency);
-  }
-  SetCount(to.num_latencies, to.latencies);
-  to.local_tracks = status.local_tracks;
-  to.priority_tracks = status.priority_tracks;
-  to.v2v_senders = status.v2v_senders;
-  to.ego_gnss_suspect = status.ego_gnss_suspect ? 1 : 0;
-  to.gps_bias = ToWire(status.gps_bias);
-  for (const MountStatus& from : status.mounts) {
-    mount_status_t mount{};
-    mount.sensor = Name(from.sensor);
-    mount.utime = ToMicros(from.stamp);
-    mount.yaw_correction_rad = from.yaw_correction_rad;
-    mount.yaw_sigma_rad = from.yaw_sigma_rad;
-    mount.windows = from.windows;
-    mount.suspicious_run = from.suspicious_run;
-    mount.has_moved = from.has_moved ? 1 : 0;
-    mount.driven_s = from.driven_s;
-    to.mounts.push_back(mount);
-  }
-  SetCount(to.num_mounts, to.mounts);
-  for (const NoticeStatus& from : status.notices) {
-    notice_t notice{};
-    notice.name = Name(from.name);
-    notice.channel = Name(from.channel);
-    notice.value = from.value;
-    notice.since_utime = ToMicros(from.since);
-    notice.advice = Name(from.advice);
-    to.notices.push_back(notice);
-  }
-  SetCount(to.num_notices, to.notices);
-  to.digest_inputs = status.digest_inputs;
-  to.digest_local = Name(status.digest_local);
-  to.digest_priority = Name(status.digest_priority);
   Encode(to, bytes);
 }
 

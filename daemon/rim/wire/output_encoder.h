@@ -27,7 +27,6 @@ void EncodeVerdict(const BsmVerdict& verdict, std::vector<std::uint8_t>& bytes);
 /// As the camera `camera` would have told them itself: its clock offset taken off the stamp again.
 void EncodeDetections(const CameraDetections& detections, const CameraConfig& camera,
                       std::vector<std::uint8_t>& bytes);
-void EncodeStatus(const Status& status, std::vector<std::uint8_t>& bytes);
 void EncodeCalibration(const CalibrationInForce& calibration, std::vector<std::uint8_t>& bytes);
 /// NULs in `text` are left out, and what is longer than a text_t may be is cut.
 void EncodeText(Timestamp stamp, const std::string& name, const std::string& text,

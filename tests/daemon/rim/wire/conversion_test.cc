@@ -13,6 +13,7 @@
 #include "daemon/rim/wire/input_decoder.h"
 #include "daemon/rim/wire/output_encoder.h"
 #include "daemon/rim/wire/sensor_conversion.h"
+#include "daemon/rim/wire/status_encoder.h"
 #include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
