@@ -17,9 +17,13 @@ Program::Program(const std::vector<std::string>& arguments, const std::string& o
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
+  // Emptied before the child runs: what an earlier run wrote must not be taken for this one's.
+  const int output = open(output_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   pid_ = fork();
-  if (pid_ != 0) return;
-  const int output = open(output_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (pid_ != 0) {
+    if (output >= 0) close(output);
+    return;
+  }
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
   execvp(argv[0], argv.data());
