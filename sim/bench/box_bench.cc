@@ -205,7 +205,7 @@ class SequenceTracker {
     record.pixels = found.pixels;
   }
 
-  std::vector<TrackedBox> Rows(const Eigen::Isometry2d& X_OS, double time_s) const {
+  [[nodiscard]] std::vector<TrackedBox> Rows(const Eigen::Isometry2d& X_OS, double time_s) const {
     std::vector<TrackedBox> rows;
     for (const LocalTrack& track : tracker_.tracks()) {
       const auto found = records_.find(track.id);

@@ -51,7 +51,8 @@ bool ForEachRow(const std::string& path, std::string& error,
     std::string problem = words.eof() ? "" : "holds something that is no number";
     if (problem.empty() && !row.empty()) problem = take(row);
     if (problem.empty()) continue;
-    error = path + ":" + std::to_string(number) + ": " + problem;
+    error = path;
+    error.append(":").append(std::to_string(number)).append(": ").append(problem);
     return false;
   }
   return true;

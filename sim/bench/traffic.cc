@@ -51,7 +51,9 @@ Driver MakeDriver(const TrafficSpec& spec, int index, Random& random) {
   const int lane = index % spec.lanes;
   const int each_way = std::max(spec.lanes / 2, 1);
   const int rank = lane % each_way;  // 0 is the slow lane, at the edge of the road.
-  const double row = index / spec.lanes - 0.5 * (spec.vehicles / spec.lanes);
+  const int rows = spec.vehicles / spec.lanes;
+  const int place = index / spec.lanes;
+  const double row = place - 0.5 * rows;
   Driver driver;
   driver.is_oncoming = lane >= each_way;
   const double from_middle_m = (each_way - rank - 0.5) * spec.lane_width_m;
@@ -92,9 +94,11 @@ VehiclePose Noisy(const VehiclePose& truth, const PoseNoise& noise, Random& rand
 Recording GenerateTraffic(const TrafficSpec& spec) {
   Random random(spec.seed);
   std::vector<Driver> drivers;
+  drivers.reserve(static_cast<std::size_t>(std::max(spec.vehicles, 0)));
   for (int i = 0; i < spec.vehicles; ++i) drivers.push_back(MakeDriver(spec, i, random));
   const double half_road_m = 0.5 * spec.lane_width_m * spec.lanes;
-  const double half_length_m = 0.5 * spec.spacing_m * (spec.vehicles / spec.lanes + 1) + kJitter_m;
+  const int rows = spec.vehicles / spec.lanes + 1;
+  const double half_length_m = 0.5 * spec.spacing_m * rows + kJitter_m;
 
   Recording out;
   for (int number = 0; number < spec.frames; ++number) {

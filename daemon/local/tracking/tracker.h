@@ -228,11 +228,11 @@ class Tracker {
   [[nodiscard]] CameraMeasurement Given(std::size_t track, const CameraMeasurement& z) const;
   void Associate(std::size_t measurements);
   void AbsorbClusters(const RadarLook& look, std::span<const RadarMeasurement> measurements);
-  bool Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,
-            const Eigen::Vector2d& p_O) const;
-  bool SeenAsTwo(std::size_t a, std::size_t b) const;
-  bool Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z,
-              const Fix& fix) const;
+  [[nodiscard]] bool Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,
+                          const Eigen::Vector2d& p_O) const;
+  [[nodiscard]] bool SeenAsTwo(std::size_t a, std::size_t b) const;
+  [[nodiscard]] bool Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z,
+                            const Fix& fix) const;
   /// Leaves the nearest of the measurements named, in their order. @return whether any had to go.
   static bool KeepNearest(std::span<const RadarMeasurement> measurements, std::size_t most,
                           std::vector<int>& which);
