@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <variant>
 #include <vector>
@@ -11,11 +12,18 @@
 
 namespace v2vouch {
 
+/// One of the reflections that mark a vehicle's outline, in the radar's frame R.
+struct OutlineReturn {
+  double range_m = 0.0;
+  double azimuth_rad = 0.0;
+  double strength_db = 0.0;  ///< SNR, or what stands for it; comparable within one scan.
+};
+
 /// One radar cluster (or one object of a radar that tracks by itself), in the radar's frame R.
 struct RadarMeasurement {
   int radar = 0;         ///< Index into VehicleConfig::radars.
   int returns = 1;       ///< Reflections in the cluster.
-  double range_m = 0.0;  ///< Of the cluster's reference point, see preprocessing/radar.
+  double range_m = 0.0;  ///< Of the cluster's reference point, see local/radar.
   double azimuth_rad = 0.0;
   double range_rate_mps = 0.0;  ///< As measured, relative to the moving antenna.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< Of [range, azimuth, range rate].
@@ -25,11 +33,20 @@ struct RadarMeasurement {
   double radial_extent_m = 0.0;        ///< Farthest minus nearest range in the cluster.
   double azimuth_min_rad = 0.0;        ///< Right edge.
   double azimuth_max_rad = 0.0;        ///< Left edge.
-  int object_id = -1;                  ///< The sensor's own object id; -1 = none.
+  double middle_azimuth_rad = 0.0;     ///< Mean azimuth of all reflections, weak ones included.
+  /// The strong reflections, nearest to the radar at their bearing, strongest first: they lie on
+  /// the outline, weak ones anywhere inside of it. None from a sensor that tracks by itself.
+  static constexpr std::size_t kMostOutline = 8;
+  std::array<OutlineReturn, kMostOutline> outline{};
+  std::size_t outline_count = 0;
+  int object_id = -1;      ///< The sensor's own object id; -1 = none.
   bool is_object = false;  ///< From a sensor that tracks by itself (RadarOutput::kObjects).
   /// Share of the vehicle that this frame could observe, by azimuth; set once a track is given it.
   /// The rest lies past the field of view or is occluded.
   double visible_share = 1.0;
+  /// That edge of the vehicle is hidden from the radar or out of its view; set with visible_share.
+  bool left_is_covered = false;
+  bool right_is_covered = false;
 };
 
 /// One camera box as angles in the levelled camera frame: origin at the optical centre, x along

@@ -7,6 +7,7 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/models/kalman.h"
+#include "daemon/common/models/radar_outline.h"
 
 namespace v2vouch {
 namespace {
@@ -16,6 +17,9 @@ constexpr double kMaxLength_m = 25.0;
 constexpr double kMaxWidth_m = 4.0;
 // Standard deviations of range or azimuth by which a span may exceed the box and the noise.
 constexpr double kSpanSlack = 2.0;
+// How well the deepest reflection marks the far end, and the outermost one the edge.
+constexpr double kInsideSigma_m = 2.0;
+constexpr double kEdgeSigma_m = 0.25;
 // Seen at a smaller angle than this (its sine), a flank has next to no width in azimuth.
 constexpr double kFlankShows = 0.3;
 // 2 cm after one second: nothing real, it keeps the filter able to change its mind.
@@ -29,8 +33,22 @@ constexpr double kAnyWidthSigma_m = 0.5;
 
 constexpr int kLength = ExtendedState::kLength;
 constexpr int kWidth = ExtendedState::kWidth;
+constexpr int kDepth = ExtendedState::kDepth;
+constexpr int kAside = ExtendedState::kAside;
+constexpr int kOthers = ExtendedState::kSize - kStateSize;
+// How long the offsets last: scatterers change with the aspect.
+constexpr double kDepthDecay_s = 3.0;
+constexpr double kAsideDecay_s = 5.0;
 using Vector = ExtendedState::Vector;
 using Matrix = ExtendedState::Matrix;
+
+// First-order Gauss-Markov: x = phi x.
+void Decay(int k, double sigma, double phi, ExtendedState& state) {
+  state.mean[k] *= phi;
+  state.covariance.row(k) *= phi;
+  state.covariance.col(k) *= phi;
+  state.covariance(k, k) += sigma * sigma * (1.0 - phi * phi);
+}
 
 void Clamp(ExtendedState& state) {
   double& length = state.mean[ExtendedState::kLength];
@@ -52,7 +70,7 @@ Extent ClassExtent(ObjectClass object_class) {
     case ObjectClass::kVan:
       return {5.2, 2.0, 0.6, 0.15};
     case ObjectClass::kTruck:
-      return {13.0, 2.5, 3.5, 0.15};
+      return {11.0, 2.5, 3.5, 0.15};
     case ObjectClass::kBus:
       return {12.0, 2.55, 1.5, 0.1};
     case ObjectClass::kMotorcycle:
@@ -78,28 +96,59 @@ Extent ExtendedState::extent() const {
 
 Extent ExtendedState::assumed_extent() const { return {mean[kLength], mean[kWidth], 0.0, 0.0}; }
 
+void AssumeOffsets(ExtendedState& state) {
+  state.mean.tail<2>().setZero();
+  state.covariance.bottomRows<2>().setZero();
+  state.covariance.rightCols<2>().setZero();
+  state.covariance(kDepth, kDepth) = kDepthOffsetSigma_m * kDepthOffsetSigma_m;
+  state.covariance(kAside, kAside) = kAsideOffsetSigma * kAsideOffsetSigma;
+}
+
 void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise) {
   KinematicState motion = state.kinematic();
   StateMatrix F;
   PredictCtra(motion, dt_s, noise, &F);
-  const Eigen::Matrix<double, kStateSize, 2> cross =
-      F * state.covariance.topRightCorner<kStateSize, 2>();
+  const Eigen::Matrix<double, kStateSize, kOthers> cross =
+      F * state.covariance.topRightCorner<kStateSize, kOthers>();
   state.mean.head<kStateSize>() = motion.mean;
   state.covariance.topLeftCorner<kStateSize, kStateSize>() = motion.covariance;
-  state.covariance.topRightCorner<kStateSize, 2>() = cross;
-  state.covariance.bottomLeftCorner<2, kStateSize>() = cross.transpose();
+  state.covariance.topRightCorner<kStateSize, kOthers>() = cross;
+  state.covariance.bottomLeftCorner<kOthers, kStateSize>() = cross.transpose();
+  Decay(kDepth, kDepthOffsetSigma_m, std::exp(-dt_s / kDepthDecay_s), state);
+  Decay(kAside, kAsideOffsetSigma, std::exp(-dt_s / kAsideDecay_s), state);
   state.covariance(ExtendedState::kLength, ExtendedState::kLength) += kSizePsd * dt_s;
   state.covariance(ExtendedState::kWidth, ExtendedState::kWidth) += 0.1 * kSizePsd * dt_s;
 }
 
+namespace {
+
+using WholeJacobianMatrix = Eigen::Matrix<double, Eigen::Dynamic, ExtendedState::kSize, 0,
+                                          Linearized::kMaxRows, ExtendedState::kSize>;
+
+WholeJacobianMatrix WholeJacobian(const Linearized& measurement) {
+  WholeJacobianMatrix H(measurement.y.size(), ExtendedState::kSize);
+  if (measurement.O.rows() == 0) {
+    H << measurement.H, measurement.E, Linearized::ExtentJacobian::Zero(measurement.y.size(), 2);
+  } else {
+    H << measurement.H, measurement.E, measurement.O;
+  }
+  return H;
+}
+
+// The model's own value leaves the offsets out.
+Linearized::Vector Innovation(const Linearized& measurement, const ExtendedState& state) {
+  if (measurement.O.rows() == 0) return measurement.y;
+  return measurement.y - measurement.O * state.mean.tail<2>();
+}
+
+}  // namespace
+
 bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool learns_size,
                     unsigned frozen) {
-  Eigen::Matrix<double, Eigen::Dynamic, ExtendedState::kSize, 0, Linearized::kMaxRows,
-                ExtendedState::kSize>
-      H(measurement.y.size(), ExtendedState::kSize);
-  H << measurement.H, measurement.E;
-  if (!JosephUpdate<ExtendedState::kSize>(measurement.y, H, measurement.R, state.mean,
-                                          state.covariance, learns_size ? 0 : 2, frozen)) {
+  if (!learns_size) frozen |= 1U << kLength | 1U << kWidth;
+  if (!JosephUpdate<ExtendedState::kSize>(Innovation(measurement, state),
+                                          WholeJacobian(measurement), measurement.R, state.mean,
+                                          state.covariance, 0, frozen)) {
     return false;
   }
   Clamp(state);
@@ -108,12 +157,8 @@ bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool le
 
 std::optional<Likelihood> EvaluateExtended(const Linearized& measurement,
                                            const ExtendedState& state) {
-  Eigen::Matrix<double, Eigen::Dynamic, ExtendedState::kSize, 0, Linearized::kMaxRows,
-                ExtendedState::kSize>
-      H(measurement.y.size(), ExtendedState::kSize);
-  H << measurement.H, measurement.E;
-  return EvaluateInnovation<ExtendedState::kSize>(measurement.y, H, measurement.R,
-                                                  state.covariance);
+  return EvaluateInnovation<ExtendedState::kSize>(
+      Innovation(measurement, state), WholeJacobian(measurement), measurement.R, state.covariance);
 }
 
 bool UpdateExtended(const LinearizedPose& measurement, ExtendedState& state) {
@@ -143,8 +188,8 @@ void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state) {
   const Eigen::Vector2d new_mean(new_extent.length_m, new_extent.width_m);
   const Eigen::Vector2d new_sigma(new_extent.length_sigma_m, new_extent.width_sigma_m);
 
-  const Eigen::Matrix2d P = state.covariance.bottomRightCorner<2, 2>();
-  const Eigen::Vector2d mean = state.mean.tail<2>();
+  const Eigen::Matrix2d P = state.covariance.block<2, 2>(kLength, kLength);
+  const Eigen::Vector2d mean = state.mean.segment<2>(kLength);
   Eigen::Vector2d size;
   Eigen::Matrix2d size_covariance = Eigen::Matrix2d::Zero();
   for (int i = 0; i < 2; ++i) {
@@ -157,17 +202,14 @@ void AssumeClass(ObjectClass from, ObjectClass to, ExtendedState& state) {
   }
   // The rest of the state given the size is as it was: regress on the old size, then put the new
   // distribution of the size in.
-  const Eigen::Matrix<double, kStateSize, 2> G =
-      state.covariance.topRightCorner<kStateSize, 2>() * P.inverse();
-  state.mean.head<kStateSize>() += G * (size - mean);
-  state.mean.tail<2>() = size;
-  StateMatrix motion = state.covariance.topLeftCorner<kStateSize, kStateSize>();
-  motion += G * (size_covariance - P) * G.transpose();
-  state.covariance.topLeftCorner<kStateSize, kStateSize>() = 0.5 * (motion + motion.transpose());
-  const Eigen::Matrix<double, kStateSize, 2> cross = G * size_covariance;
-  state.covariance.topRightCorner<kStateSize, 2>() = cross;
-  state.covariance.bottomLeftCorner<2, kStateSize>() = cross.transpose();
-  state.covariance.bottomRightCorner<2, 2>() = size_covariance;
+  Eigen::Matrix<double, ExtendedState::kSize, 2> G =
+      state.covariance.middleCols<2>(kLength) * P.inverse();
+  G.middleRows<2>(kLength).setIdentity();
+  state.mean += G * (size - mean);
+  state.mean.segment<2>(kLength) = size;
+  Matrix covariance = state.covariance + G * (size_covariance - P) * G.transpose();
+  state.covariance = 0.5 * (covariance + covariance.transpose());
+  state.covariance.block<2, 2>(kLength, kLength) = size_covariance;
   Clamp(state);
 }
 
@@ -259,7 +301,8 @@ std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoSta
     const double noise = 2.0 * std::sqrt(std::log(measurement.returns)) * sigma[i];
     const double excess = span[i] - noise - kSpanSlack * sigma[i] - whole[i];
     const double noise2 = noise * noise;
-    out.R(i, i) = noise2;
+    const double inside = i == 0 ? kInsideSigma_m : kEdgeSigma_m / range;
+    out.R(i, i) = noise2 + inside * inside;
     if (excess > 0.0) {
       out.y[i] = excess;
       says_something = true;

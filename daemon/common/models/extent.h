@@ -27,10 +27,12 @@ inline constexpr double kLongestVehicle_m = 18.75;
 struct ExtendedState {
   static constexpr int kLength = kStateSize;
   static constexpr int kWidth = kStateSize + 1;
-  static constexpr int kSize = kStateSize + 2;
+  static constexpr int kDepth = kStateSize + 2;  ///< Lasting offsets of radar, see
+  static constexpr int kAside = kStateSize + 3;  ///< radar_outline.h.
+  static constexpr int kSize = kStateSize + 4;
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
-  Vector mean = Vector::Zero();  ///< StateIndex, then length and width [m].
+  Vector mean = Vector::Zero();  ///< StateIndex, then length and width [m], then the offsets.
   Matrix covariance = Matrix::Identity();
 
   [[nodiscard]] KinematicState kinematic() const;
@@ -39,6 +41,9 @@ struct ExtendedState {
   /// covariance carries the uncertainty already.
   [[nodiscard]] Extent assumed_extent() const;
 };
+
+/// Nothing is known of the lasting offsets of radar: their stationary distribution.
+void AssumeOffsets(ExtendedState& state);
 
 /// PredictCtra of the motion; the size keeps a little process noise, so that it never freezes.
 void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise);

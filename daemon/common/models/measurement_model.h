@@ -25,6 +25,8 @@ struct Linearized {
   /// extent that was passed in: a filter that estimates the extent itself passes sigmas of 0.
   Covariance R;
   ExtentJacobian E;  ///< dh/d(length, width); zero for a point target.
+  /// dh/d(depth, aside) of the lasting offsets of radar_outline.h; no rows where there are none.
+  ExtentJacobian O = ExtentJacobian(0, 2);
 };
 
 /// Where the centre of mass of a vehicle's radar reflections lies, as seen from a sensor: offset

@@ -5,6 +5,7 @@
 #include "daemon/common/base/angle.h"
 #include "daemon/common/models/dual.h"
 #include "daemon/common/models/measurement_model.h"
+#include "daemon/common/models/radar_outline.h"
 #include "daemon/common/models/reflections.h"
 
 namespace v2vouch {
@@ -207,6 +208,9 @@ Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, const Eigen::Vecto
 std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& extent,
                                          const EgoState& ego, const RadarConfig& radar,
                                          const RadarMeasurement& measurement) {
+  if (measurement.outline_count > 0 && !IsPoint(extent.length_m, extent.width_m)) {
+    if (auto outline = LinearizeOutline(x, extent, ego, radar, measurement)) return outline;
+  }
   const Pose<Odometry, Radar> X_OR =
       ego.X_OB * Pose<Body, Radar>(radar.x_m, radar.y_m, radar.yaw_rad);
   // Velocity of the antenna: rear axle plus yaw rate x lever arm.

@@ -17,6 +17,7 @@ struct Reflection {
   double x_m = 0.0;
   double y_m = 0.0;
   double ground_rate_mps = 0.0;  ///< Range rate with the antenna's motion taken out.
+  double strength_db = 0.0;      ///< SNR; 0 where the sensor tells none.
   bool is_standing = false;
   int object_id = -1;
 };

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/data/outline.h"
 
 namespace v2vouch {
 namespace {
@@ -24,6 +25,12 @@ double GroundRateSigma(const Eigen::Vector2d& ray, const AntennaMotion& antenna,
   return std::sqrt(radar.range_rate_sigma_mps * radar.range_rate_sigma_mps +
                    from_azimuth * from_azimuth + ego.speed_sigma_mps * ego.speed_sigma_mps +
                    from_yaw_rate * from_yaw_rate);
+}
+
+// What tells strong reflections of one vehicle from weak ones.
+double StrengthOf(const RadarDetection& detection) {
+  if (std::isfinite(detection.snr_db)) return detection.snr_db;
+  return std::isfinite(detection.rcs_dbsm) ? detection.rcs_dbsm : 0.0;
 }
 
 bool ByAzimuthThenRange(const RadarMeasurement& a, const RadarMeasurement& b) {
@@ -75,6 +82,7 @@ void RadarPreprocessor::Process(const RadarScan& scan, const RadarConfig& radar,
                             .x_m = detection.range_m * ray.x(),
                             .y_m = detection.range_m * ray.y(),
                             .ground_rate_mps = ground_rate_mps,
+                            .strength_db = StrengthOf(detection),
                             .is_standing = std::abs(ground_rate_mps) <= tolerance_mps,
                             .object_id = detection.track_id});
   }
@@ -179,21 +187,36 @@ void RadarPreprocessor::Cluster() {
 
 void RadarPreprocessor::Emit(std::span<const int> members, const RadarConfig& radar,
                              const AntennaMotion& antenna,
-                             std::vector<RadarMeasurement>& measurements) const {
-  const auto count = static_cast<double>(members.size());
+                             std::vector<RadarMeasurement>& measurements) {
   const auto at = [&](int member) -> const Reflection& {
     return reflections_[static_cast<std::size_t>(member)];
   };
+  RadarMeasurement m;
+  m.is_object = radar.output == RadarOutput::kObjects;
+  outline_.clear();
+  for (const int member : members) {
+    const Reflection& r = at(member);
+    outline_.push_back({r.range_m, r.azimuth_rad, r.strength_db});
+  }
+  if (!m.is_object) KeepOutline(outline_);
   Eigen::Vector2d mean(0.0, 0.0);
   double ground_rate_mps = 0.0;
+  double count = 0.0;
+  const auto is_outline = [&](const Reflection& r) {
+    return std::ranges::any_of(outline_, [&](const OutlineReturn& o) {
+      return o.range_m == r.range_m && o.azimuth_rad == r.azimuth_rad;
+    });
+  };
   for (const int member : members) {
-    mean += Eigen::Vector2d(at(member).x_m, at(member).y_m);
-    ground_rate_mps += at(member).ground_rate_mps;
+    const Reflection& r = at(member);
+    if (!is_outline(r)) continue;
+    mean += Eigen::Vector2d(r.x_m, r.y_m);
+    ground_rate_mps += r.ground_rate_mps;
+    count += 1.0;
   }
   mean /= count;
   ground_rate_mps /= count;
 
-  RadarMeasurement m;
   m.returns = static_cast<int>(members.size());
   // Reflections all round a very close sensor may average to its very place.
   m.range_m = std::max(mean.norm(), 0.01);
@@ -203,12 +226,12 @@ void RadarPreprocessor::Emit(std::span<const int> members, const RadarConfig& ra
   m.range_rate_mps = ground_rate_mps - antenna.velocity_R.dot(ray);
   m.is_static = at(members[0]).is_standing;
   m.object_id = members.size() == 1 ? at(members[0]).object_id : -1;
-  m.is_object = radar.output == RadarOutput::kObjects;
 
   double nearest_m = at(members[0]).range_m;
   double farthest_m = nearest_m;
   double right_rad = 0.0;
   double left_rad = 0.0;
+  double middle_rad = 0.0;
   Eigen::Array3d squares = Eigen::Array3d::Zero();
   for (const int member : members) {
     const Reflection& r = at(member);
@@ -217,6 +240,8 @@ void RadarPreprocessor::Emit(std::span<const int> members, const RadarConfig& ra
     const double aside_rad = AngleDifference(r.azimuth_rad, m.azimuth_rad);
     right_rad = std::min(right_rad, aside_rad);
     left_rad = std::max(left_rad, aside_rad);
+    middle_rad += aside_rad;
+    if (!is_outline(r)) continue;
     const Eigen::Vector2d off = Eigen::Vector2d(r.x_m, r.y_m) - mean;
     const double along_m = off.dot(ray);
     const double across_rad = (ray.x() * off.y() - ray.y() * off.x()) / m.range_m;
@@ -225,6 +250,11 @@ void RadarPreprocessor::Emit(std::span<const int> members, const RadarConfig& ra
   }
   m.near_range_m = nearest_m;
   m.radial_extent_m = farthest_m - nearest_m;
+  m.middle_azimuth_rad = m.azimuth_rad + middle_rad / static_cast<double>(members.size());
+  if (!m.is_object) {
+    m.outline_count = std::min(outline_.size(), RadarMeasurement::kMostOutline);
+    std::copy_n(outline_.begin(), m.outline_count, m.outline.begin());
+  }
   m.azimuth_min_rad = m.azimuth_rad + right_rad;
   m.azimuth_max_rad = m.azimuth_rad + left_rad;
 

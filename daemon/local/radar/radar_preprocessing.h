@@ -115,7 +115,7 @@ class RadarPreprocessor {
  private:
   [[nodiscard]] bool IsKept(const RadarDetection& detection, const RadarConfig& radar) const;
   void Emit(std::span<const int> members, const RadarConfig& radar, const AntennaMotion& antenna,
-            std::vector<RadarMeasurement>& measurements) const;
+            std::vector<RadarMeasurement>& measurements);
   void Cluster();
 
   struct Piece {  // order_[begin, end), to be clustered with the radius of that depth.
@@ -128,8 +128,9 @@ class RadarPreprocessor {
   Dbscan dbscan_;
   VehicleMerge merge_;
   std::vector<Reflection> reflections_;  // Kept ones, ordered by range.
-  std::vector<int> order_;               // Indices into them, cluster by cluster.
-  std::size_t moving_ = 0;               // Those before are moving, the rest standing.
+  std::vector<OutlineReturn> outline_;
+  std::vector<int> order_;  // Indices into them, cluster by cluster.
+  std::size_t moving_ = 0;  // Those before are moving, the rest standing.
   std::vector<Piece> pieces_;
   std::vector<int> clustered_;  // Finished clusters, one after another, each ending at an end.
   std::vector<std::size_t> ends_;

@@ -68,7 +68,7 @@ std::optional<Reason> FaultOf(const BoxMeasurement& z) {
 
 void VehicleFilter::StartAt(const BoxMeasurement& z) {
   ExtendedState& state = components_[0].state;
-  state.mean << z.x_m, z.y_m, WrapAngle(z.yaw_rad), 0.0, 0.0, 0.0, z.length_m, z.width_m;
+  state.mean << z.x_m, z.y_m, WrapAngle(z.yaw_rad), 0.0, 0.0, 0.0, z.length_m, z.width_m, 0.0, 0.0;
   state.covariance.setZero();
   state.covariance.topLeftCorner<2, 2>() = z.position_covariance;
   const auto set = [&state](int k, double sigma) { state.covariance(k, k) = sigma * sigma; };
@@ -78,6 +78,7 @@ void VehicleFilter::StartAt(const BoxMeasurement& z) {
   set(kAccel, kInitialAccelSigma_mps2);
   set(ExtendedState::kLength, z.length_sigma_m);
   set(ExtendedState::kWidth, z.width_sigma_m);
+  AssumeOffsets(state);
   components_[0].weight = 1.0;
   count_ = 1;
   has_driven_ = true;

@@ -4,8 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/data/outline.h"
 #include "daemon/common/models/extent.h"
 #include "daemon/local/tracking/tracker.h"
 
@@ -24,6 +26,10 @@ constexpr double kMostDoubt_m = 1.5;
 constexpr double kPointRadius_m = 2.5;
 // Parts of one rigid body move as one; wheels and limbs of the model do not.
 constexpr double kRangeRateSlack_mps = 1.5;
+// A face answers this much stronger than what lies inside of a vehicle.
+constexpr double kFaceStronger_db = 10.0;
+// ... and lies before the vehicle's middle, not where the one beside it may stand.
+constexpr double kFaceAside = 0.25;
 // Tracks that are hardly believed own what lies near them only while they are being hit.
 constexpr double kOwnerExistence = 0.5;
 // A lorry or bus whose length is not known yet may reach this many sigmas farther.
@@ -44,13 +50,38 @@ double ReachAlong(const LocalTrack& track) {
 RadarMeasurement JoinClusters(const RadarMeasurement& a, const RadarMeasurement& b) {
   const double na = std::max(a.returns, 1);
   const double nb = std::max(b.returns, 1);
-  const double wa = na / (na + nb);
-  const double wb = nb / (na + nb);
   const auto far = [](const RadarMeasurement& z) { return z.near_range_m + z.radial_extent_m; };
   RadarMeasurement out = a;
   out.returns = a.returns + b.returns;
+  double wa = na / (na + nb);
+  const double middle_share = 1.0 - wa;
+  if (a.outline_count > 0 && b.outline_count > 0) {
+    std::vector<OutlineReturn> outline;
+    outline.insert(outline.end(), a.outline.begin(),
+                   a.outline.begin() + static_cast<std::ptrdiff_t>(a.outline_count));
+    outline.insert(outline.end(), b.outline.begin(),
+                   b.outline.begin() + static_cast<std::ptrdiff_t>(b.outline_count));
+    KeepOutline(outline);
+    out.outline_count = std::min(outline.size(), RadarMeasurement::kMostOutline);
+    std::copy_n(outline.begin(), out.outline_count, out.outline.begin());
+    double from_a = 0.0;
+    for (std::size_t k = 0; k < out.outline_count; ++k) {
+      for (std::size_t m = 0; m < a.outline_count; ++m) {
+        if (out.outline[k].range_m == a.outline[m].range_m &&
+            out.outline[k].azimuth_rad == a.outline[m].azimuth_rad) {
+          from_a += 1.0;
+          break;
+        }
+      }
+    }
+    wa = from_a / static_cast<double>(out.outline_count);
+  }
+  const double wb = 1.0 - wa;
   out.range_m = wa * a.range_m + wb * b.range_m;
   out.azimuth_rad = WrapAngle(a.azimuth_rad + wb * AngleDifference(b.azimuth_rad, a.azimuth_rad));
+  out.middle_azimuth_rad =
+      a.middle_azimuth_rad +
+      middle_share * AngleDifference(b.middle_azimuth_rad, a.middle_azimuth_rad);
   out.range_rate_mps = wa * a.range_rate_mps + wb * b.range_rate_mps;
   out.ground_range_rate_mps = wa * a.ground_range_rate_mps + wb * b.ground_range_rate_mps;
   out.covariance = wa * wa * a.covariance + wb * wb * b.covariance;
@@ -107,6 +138,37 @@ void Tracker::AbsorbClusters(const RadarLook& look,
       if (owner_[j] >= 0) return;
       if (Owns(i, look, measurements[j], candidates_[j].p_O)) owner_[j] = static_cast<int>(i);
     });
+  }
+}
+
+// A standing vehicle that a camera has named may have been given what lies inside of it, or what
+// stands behind: a clearly stronger standing cluster before that, in its silhouette, is its face.
+void Tracker::TakeFaces(const RadarLook& look, std::span<const RadarMeasurement> measurements) {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (assigned_[i] < 0 || tracks_[i].camera_hits == 0 || !hidden_[i].filter.is_vehicle())
+      continue;
+    const RadarMeasurement& given = measurements[static_cast<std::size_t>(assigned_[i])];
+    if (!given.is_static || given.outline_count == 0) continue;
+    const Eigen::Vector2d line = hidden_[i].filter.position_O() - look.origin_O();
+    const double range_m = line.norm();
+    const Eigen::Vector2d u = line / std::max(range_m, 0.1);
+    const Eigen::Vector2d forward(std::cos(tracks_[i].state_O.mean[kYaw]),
+                                  std::sin(tracks_[i].state_O.mean[kYaw]));
+    const double sine = std::abs(forward.x() * u.y() - forward.y() * u.x());
+    const double cosine = std::abs(forward.dot(u));
+    const Extent& extent = tracks_[i].extent;
+    const double deep_m = cosine * extent.length_m + sine * extent.width_m;
+    candidates_.ForEachNear(
+        hidden_[i].filter.position_O(), deep_m + extent.length_m, [&](std::size_t j) {
+          const RadarMeasurement& z = measurements[j];
+          if (owner_[j] >= 0 || !z.is_static || z.outline_count == 0) return;
+          if (z.outline[0].strength_db < given.outline[0].strength_db + kFaceStronger_db) return;
+          const double before_m = given.range_m - z.range_m;
+          if (before_m < 0.0 || before_m > deep_m) return;
+          const Eigen::Vector2d off = candidates_[j].p_O - look.origin_O();
+          if (std::abs(u.x() * off.y() - u.y() * off.x()) > kFaceAside * extent.width_m) return;
+          owner_[j] = static_cast<int>(i);
+        });
   }
 }
 

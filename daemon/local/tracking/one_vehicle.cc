@@ -23,6 +23,7 @@ constexpr double kMaxEndDoubt_m = 1.5;
 constexpr double kPartAside_m = 1.5;
 constexpr double kPartSpeed_mps = 2.0;
 constexpr double kPartHold_s = 0.5;
+constexpr double kFreshReflection_s = 0.1;
 constexpr double kPartSigma_m = 1.5;
 
 // Of two tracks of one vehicle the one that stays: published before not, named by a camera before
@@ -146,8 +147,9 @@ std::optional<double> Tracker::LengthWithPart(std::size_t i, std::size_t j) cons
     return std::nullopt;
   if (part.last_camera && part.last_camera == lorry.last_camera) return std::nullopt;
   const Eigen::Rotation2D<double> into(-lorry.state_O.mean[kYaw]);
-  const Eigen::Vector2d between =
-      into * (part.state_O.mean.head<2>() - lorry.state_O.mean.head<2>());
+  // What is seen of it is its last reflection; its centre lies where a car's would.
+  if (ToSeconds(now_ - hidden_[i].reflected) > kFreshReflection_s) return std::nullopt;
+  const Eigen::Vector2d between = into * (hidden_[i].reflection_O - lorry.state_O.mean.head<2>());
   if (std::abs(between.y()) > kPartAside_m) return std::nullopt;
   const Eigen::Vector2d sensor =
       into * (hidden_[j].filter.seen_from_O() - lorry.state_O.mean.head<2>());

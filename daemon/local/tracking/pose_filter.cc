@@ -19,7 +19,7 @@ void VehicleFilter::StartAt(const PoseMeasurement& z, const Extent& size) {
   constexpr int kRows = LinearizedPose::kRows;
   ExtendedState& state = components_[0].state;
   state.mean << z.x_m, z.y_m, WrapAngle(z.yaw_rad), z.speed_mps, z.yaw_rate_radps, 0.0,
-      size.length_m, size.width_m;
+      size.length_m, size.width_m, 0.0, 0.0;
   state.covariance.setZero();
   state.covariance.topLeftCorner<kRows, kRows>() = z.covariance;
   state.covariance(kAccel, kAccel) = kInitialAccelSigma_mps2 * kInitialAccelSigma_mps2;
@@ -27,6 +27,7 @@ void VehicleFilter::StartAt(const PoseMeasurement& z, const Extent& size) {
       size.length_sigma_m * size.length_sigma_m;
   state.covariance(ExtendedState::kWidth, ExtendedState::kWidth) =
       size.width_sigma_m * size.width_sigma_m;
+  AssumeOffsets(state);
   components_[0].weight = 1.0;
   count_ = 1;
   has_driven_ = true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -24,6 +25,17 @@ constexpr double kMoreReturns = 0.5;
 constexpr double kDepth_m = 3.0;
 constexpr double kSeveral = 2.0;
 constexpr double kLone = -1.5;
+// Each decibel below the strongest return in sight makes a place less likely: ln of a ratio.
+constexpr double kPerDecibel = 0.3;
+constexpr double kMostWeaker_db = 20.0;
+constexpr std::size_t kRadarSlots = 8;
+
+// Strength falls with the fourth power of the range.
+double StrengthAtOneMetre(const RadarMeasurement& z) {
+  return z.outline[0].strength_db + 40.0 * std::log10(std::max(z.range_m, 1.0));
+}
+
+std::size_t RadarSlot(int radar) { return static_cast<std::size_t>(radar) % kRadarSlots; }
 
 }  // namespace
 
@@ -45,7 +57,8 @@ void Tracker::KeepReturns(const RadarLook& look, int radar,
     const bool is_moving = !measurements[j].is_static;
     const Fix fix = settings_.point_targets ? FixOf(look, measurements[j])
                                             : ReflectionFixOf(look, measurements[j]);
-    recent_.push_back({fix, radar, 0, measurements[j].returns, is_moving});
+    recent_.push_back(
+        {fix, radar, 0, measurements[j].returns, is_moving, StrengthAtOneMetre(measurements[j])});
   }
 }
 
@@ -59,6 +72,14 @@ Tracker::Place Tracker::FindPlace(const Glances& glances) {
   for (const RecentReturn& at : recent_) {
     const auto misfit = glances.Misfit(at.fix.p_O);
     if (misfit) in_sight_.push_back({&at, *misfit, glances.RangeTo(at.fix.p_O)});
+  }
+  // What a radar sees best there: the face that a vehicle turns to it answers by far the strongest.
+  std::array<double, kRadarSlots> strongest_db;
+  strongest_db.fill(-1e9);
+  for (const InSight& seen : in_sight_) {
+    if (seen.at->is_moving || seen.misfit > most) continue;
+    double& db = strongest_db[RadarSlot(seen.at->radar)];
+    db = std::max(db, seen.at->strength_db);
   }
   double best_score = 0.0;
   double second_score = 0.0;
@@ -83,7 +104,10 @@ Tracker::Place Tracker::FindPlace(const Glances& glances) {
     }
     const double per_scan = returns / static_cast<double>(std::max(std::popcount(scans), 1));
     const double plenty = std::clamp((per_scan - kPostReturns) / kMoreReturns, 0.0, 1.0);
-    const double score = kLone + plenty * (kSeveral - kLone) - 0.5 * seen.misfit;
+    const double weaker_db =
+        std::min(strongest_db[RadarSlot(at.radar)] - at.strength_db, kMostWeaker_db);
+    const double score =
+        kLone + plenty * (kSeveral - kLone) - 0.5 * seen.misfit - kPerDecibel * weaker_db;
     if (best_m < 0.0 || score > best_score) {
       // One place shows itself once for each of its returns.
       if (best_m >= 0.0 && std::abs(best_m - range_m) > kDepth_m) {

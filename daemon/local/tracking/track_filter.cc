@@ -32,7 +32,7 @@ constexpr double kAssumedYawSigma_rad = 0.7;
 constexpr double kYoung_s = 0.7;
 // Lasting error of the reflection model, along the vehicle and in any direction.
 constexpr double kAlongFloor_m = 0.06;
-constexpr double kFloor_m = 0.04;
+constexpr double kFloor_m = 0.1;
 // A silhouette wider than this shows a side, unless a lorry's.
 constexpr double kWidestCar_m = 3.2;
 
@@ -86,7 +86,7 @@ bool TrackFilter::Update(const Look& look, const Measurement& z, const FilterSet
     PromoteIfClear(settings);
     return true;
   }
-  if (!vehicle_.Update(look, z, object_class_, age_s_ < kYoung_s, settings)) return false;
+  if (!vehicle_.Update(look, z, age_s_ < kYoung_s, settings)) return false;
   if (!has_driven()) FollowPoint(look, z, settings);
   return true;
 }

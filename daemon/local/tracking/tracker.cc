@@ -38,10 +38,18 @@ constexpr int kFirstCamera = 8;
 // Detection probability of a frame in clear view, and of a picture that should show the vehicle.
 constexpr double kClearLook = 0.4;
 constexpr double kExpectedInPicture = 0.7;
+// An echo between two vehicles against twice the nearer one's range, bearing and range rate.
+constexpr double kEchoRange_m = 2.0;
+constexpr double kEchoSigmas = 3.0;
+constexpr double kEchoBearing_rad = 0.01;
+constexpr double kEchoRate_mps = 0.6;
+constexpr double kEchoWeaker_db = 10.0;
 // How long a hidden track is kept for each second it was known.
 constexpr double kHoldPerKnown = 3.0;
 constexpr double kLeastHold_s = 0.3;
 constexpr double kCoastingSince_s = 0.5;
+// In view, a vehicle is missed for no longer than this.
+constexpr double kOverdue_s = 0.7;
 // More tracks than this are not started by one frame.
 constexpr std::size_t kMostNewcomers = 64;
 constexpr std::size_t kMostBoxes = 128;
@@ -131,6 +139,12 @@ bool Tracker::IsWorthListing(std::size_t track) const {
   return tracks_[track].existence * 2.0 * (c2 - error) > c2;
 }
 
+// Nothing is known to hide it, and no sensor has seen it for a while.
+bool Tracker::IsOverdue(std::size_t track) const {
+  return tracks_[track].visibility == Visibility::kVisible &&
+         ToSeconds(now_ - hidden_[track].last_hit) > kOverdue_s;
+}
+
 void Tracker::AskDetectability(int sensor, const DetectabilityOf& detectability) {
   Timestamp& last = last_look_[static_cast<std::size_t>(sensor) % last_look_.size()];
   const double since_s = last == Timestamp{} ? 1e9 : ToSeconds(now_ - last);
@@ -157,6 +171,8 @@ void Tracker::AskDetectability(int sensor, const DetectabilityOf& detectability)
 RadarMeasurement Tracker::Given(std::size_t track, const RadarMeasurement& z) const {
   RadarMeasurement given = z;
   given.visible_share = seen_[track].visible_share;
+  given.left_is_covered = seen_[track].left_is_covered;
+  given.right_is_covered = seen_[track].right_is_covered;
   return given;
 }
 
@@ -251,7 +267,25 @@ void Tracker::PrepareRadar(const RadarLook& look, std::span<const RadarMeasureme
     candidate.log_density = std::log(density / (1.0 - birth_existence));
     candidates_.Add(candidate);
   }
+  DenyEchoes(look, measurements);
   candidates_.Sort();
+}
+
+// What is reflected between the car and the vehicle before it comes back from twice as far, at
+// twice the range rate, in the same direction and weaker: it starts nothing.
+void Tracker::DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement> measurements) {
+  const double bearing_rad = kEchoSigmas * look.radar.azimuth_sigma_rad + kEchoBearing_rad;
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    const RadarMeasurement& echo = measurements[j];
+    if (!candidates_[j].may_start || echo.outline_count == 0) continue;
+    for (const RadarMeasurement& z : measurements) {
+      if (z.outline_count == 0 || std::abs(echo.range_m - 2.0 * z.range_m) > kEchoRange_m) continue;
+      if (std::abs(AngleDifference(echo.azimuth_rad, z.azimuth_rad)) > bearing_rad) continue;
+      if (std::abs(echo.range_rate_mps - 2.0 * z.range_rate_mps) > kEchoRate_mps) continue;
+      if (z.outline[0].strength_db < echo.outline[0].strength_db + kEchoWeaker_db) continue;
+      candidates_[j].may_start = false;
+    }
+  }
 }
 
 void Tracker::UpdateRadar(int radar, const EgoState& ego,
@@ -279,6 +313,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
   }
   Associate(measurements.size());
   AbsorbClusters(look, measurements);
+  TakeFaces(look, measurements);
   JoinOwned(measurements);
 
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -351,6 +386,8 @@ void Tracker::StartFromRadar(const RadarLook& look, int radar,
     tracks_.back().last_radar = now_;
     tracks_.back().radar_hits = 1;
     hidden_.back().moving_hits = 1;
+    hidden_.back().reflection_O = candidates_[j].p_O;
+    hidden_.back().reflected = now_;
     NotePlace(tracks_.size() - 1, look, candidates_[j].p_O);
     updates_.push_back({tracks_.back().id, measurements[j]});
   }
@@ -558,7 +595,7 @@ void Tracker::Conclude(double dt_s) {
     if (!track.is_confirmed && IsConvincing(i)) {
       track.is_confirmed = true;
     } else if (track.is_confirmed && (track.existence < config_.keep_existence ||
-                                      !IsWorthListing(i) || IsTransparent(i))) {
+                                      !IsWorthListing(i) || IsTransparent(i) || IsOverdue(i))) {
       track.is_confirmed = false;
     }
     const bool was_believed = hits >= config_.confirm_hits;

@@ -38,7 +38,7 @@ struct TrackerConfig {
   double survival_per_s = 0.999;       ///< Probability to still be there after one second.
   double hidden_hold_s = 8.0;          ///< A hidden track is kept at most this long without a hit.
   double max_position_sigma_m = 5.0;   ///< A less certain track is not published anew.
-  double list_cutoff_m = 10.0;         ///< c of the rule that ends a coasting track, see Tracker.
+  double list_cutoff_m = 4.0;          ///< c of the rule that ends a coasting track, see Tracker.
   double miss_memory_s = 0.15;         ///< Misses of a published track closer than this are one.
   double camera_birth_range_m = 60.0;  ///< Farther out, boxes alone publish nothing.
   int max_tracks = 512;
@@ -206,6 +206,7 @@ class Tracker {
     int scans_ago = 0;
     int returns = 1;
     bool is_moving = false;
+    double strength_db = 0.0;  // Of its strongest reflection, as from one metre.
   };
   struct InSight {  // A recent return within the bearings of a track's boxes.
     const RecentReturn* at = nullptr;
@@ -220,13 +221,16 @@ class Tracker {
   void PreparePoses(const PoseSensor& sensor, std::span<const PoseMeasurement> poses);
   [[nodiscard]] double Crowd(std::size_t detections) const;
   void PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements);
+  void DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void PrepareCamera(const CameraLook& look, std::span<const CameraMeasurement> measurements);
   void AskDetectability(int sensor, const DetectabilityOf& detectability);
   [[nodiscard]] bool IsWorthListing(std::size_t track) const;
+  [[nodiscard]] bool IsOverdue(std::size_t track) const;
   /// The measurement as one of this track, with what visibility knows about its edges.
   [[nodiscard]] RadarMeasurement Given(std::size_t track, const RadarMeasurement& z) const;
   [[nodiscard]] CameraMeasurement Given(std::size_t track, const CameraMeasurement& z) const;
   void Associate(std::size_t measurements);
+  void TakeFaces(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void AbsorbClusters(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   [[nodiscard]] bool Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,
                           const Eigen::Vector2d& p_O) const;

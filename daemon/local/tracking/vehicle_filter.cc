@@ -8,6 +8,7 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/models/kalman.h"
+#include "daemon/common/models/radar_outline.h"
 
 namespace v2vouch {
 namespace {
@@ -16,11 +17,14 @@ constexpr double kInitialYawRateSigma_radps = 0.1;
 constexpr double kInitialAccelSigma_mps2 = 1.5;
 // The spread of a cluster speaks about the size only where it is not absurd.
 constexpr double kSpanGate = 9.0;
+// Beyond this squared distance a reflection beside the silhouette counts ever less.
+constexpr double kEdgeGate = 4.0;
 // From this squared distance on a box may be one of a vehicle of another size: one in twenty is, so
 // much costs it. What so many boxes or clusters say counts more than a name.
 constexpr double kOddBox = 9.0;
 const double kOddSizeCost = 2.0 * std::log(20.0);
-constexpr int kOddBoxes = 2;
+constexpr int kLargerBoxes = 3;    // In a row: a vehicle that shows its whole flank,
+constexpr int kSmallerBoxes = 12;  // and one that is partly hidden, or badly boxed.
 constexpr int kOddSpans = 3;
 // A cluster that is too wide may hold a part of the vehicle beside, which radars do not tell apart
 // well: such clusters must come more often than every fourth time. One that is too deep holds no
@@ -32,6 +36,11 @@ constexpr double kSpanShare = 0.9;
 // Seen at a smaller angle than this (its sine), a vehicle's length hides behind its near face:
 // what a camera seems to say about it is its own lasting error.
 constexpr double kLengthShows = 0.3;
+// Memory of how deep the returns lie, per scan, and the most that one scan adds to it.
+constexpr double kDepthMemory = 0.1;
+constexpr double kMostDepth = 6.0;
+// Slower than this a vehicle hardly turns.
+constexpr double kTurning_mps = 1.0;
 // Axes of a standing vehicle: most stand along the road or across it.
 constexpr std::array<double, VehicleFilter::kMostAxes> kAxisWeight = {0.4, 0.3, 0.15, 0.15};
 constexpr std::array<double, VehicleFilter::kMostAxes> kAxisTurn_rad = {0.0, kPi / 2, kPi / 4,
@@ -46,12 +55,24 @@ constexpr double kDrivingSigmas = 3.0;
 template <class Measurement>
 constexpr bool kLearnsSize = std::is_same_v<Measurement, CameraMeasurement>;
 
+// How far behind the expected outline the returns lie, in standard deviations.
+double DepthOf(const Linearized& model, const ExtendedState& state) {
+  if (model.O.rows() == 0) return 0.0;
+  Eigen::Matrix<double, 1, ExtendedState::kSize> h;
+  h << model.H.row(0), model.E.row(0), model.O.row(0);
+  const double variance = h.lazyProduct(state.covariance).dot(h) + model.R(0, 0);
+  return (model.y[0] - model.O.row(0).dot(state.mean.tail<2>())) / std::sqrt(variance);
+}
+
 std::optional<Linearized> Linearize(const ExtendedState& state, const Extent& extent,
-                                    const RadarLook& look, const RadarMeasurement& z) {
-  return LinearizeRadar(state.mean.head<kStateSize>(), extent, look.ego, look.radar, z);
+                                    const RadarLook& look, const RadarMeasurement& z,
+                                    double usual_depth) {
+  auto model = LinearizeRadar(state.mean.head<kStateSize>(), extent, look.ego, look.radar, z);
+  if (model) TemperDepth(DepthOf(*model, state) - usual_depth, *model);
+  return model;
 }
 std::optional<Linearized> Linearize(const ExtendedState& state, const Extent& extent,
-                                    const CameraLook& look, const CameraMeasurement& z) {
+                                    const CameraLook& look, const CameraMeasurement& z, double) {
   return LinearizeCamera(state.mean.head<kStateSize>(), extent, look.ego, look.camera, z);
 }
 
@@ -81,21 +102,25 @@ void Rename(ObjectClass from, ObjectClass to, const Eigen::Vector2d& seen_from_O
 }
 
 template <class Look, class Measurement>
-bool UpdateState(const Look& look, const Measurement& z, bool is_young,
-                 const FilterSettings& settings, ExtendedState& state) {
-  auto model = Linearize(state, AssumedExtent(state, settings), look, z);
+bool UpdateState(const Look& look, const Measurement& z, bool is_young, bool knows_axis,
+                 double usual_depth, const FilterSettings& settings, ExtendedState& state) {
+  auto model = Linearize(state, AssumedExtent(state, settings), look, z, usual_depth);
   if (!model) return false;
   ExtendedState next = state;
-  const unsigned frozen = Frozen(state, look.origin_O());
+  unsigned frozen = Frozen(state, look.origin_O());
+  // What stands does not turn: where its reflections lie says less of its axis than it seems to.
+  if ((!kLearnsSize<Measurement> || knows_axis) && std::abs(state.mean[kSpeed]) < kTurning_mps) {
+    frozen |= 1U << kYaw;
+  }
   if (!UpdateExtended(*model, next, kLearnsSize<Measurement>, frozen)) return false;
   if (is_young) {
     // Iterated EKF, one more round: linearise where the first update went, then apply the result to
     // the prediction.
-    auto again = Linearize(next, AssumedExtent(next, settings), look, z);
+    auto again = Linearize(next, AssumedExtent(next, settings), look, z, usual_depth);
     if (again) {
       ExtendedState::Vector back = state.mean - next.mean;
       back[kYaw] = WrapAngle(back[kYaw]);
-      again->y -= again->H * back.head<kStateSize>() + again->E * back.tail<2>();
+      again->y -= again->H * back.head<kStateSize>() + again->E * back.segment<2>(kStateSize);
       ExtendedState iterated = state;
       if (UpdateExtended(*again, iterated, kLearnsSize<Measurement>, frozen)) next = iterated;
     }
@@ -104,11 +129,28 @@ bool UpdateState(const Look& look, const Measurement& z, bool is_young,
   return true;
 }
 
+// Reflections beside the silhouette move it.
+void KeepInside(const RadarLook& look, const RadarMeasurement& z, const FilterSettings& settings,
+                ExtendedState& state) {
+  if (settings.point_targets) return;
+  auto edge = LinearizeEdges(state.mean.head<kStateSize>(), AssumedExtent(state, settings),
+                             look.ego, look.radar, z);
+  if (!edge) return;
+  const auto fit = EvaluateExtended(*edge, state);
+  if (!fit) return;
+  // What lies far outside is another's, more likely.
+  if (fit->distance_squared > kEdgeGate) edge->R *= fit->distance_squared / kEdgeGate;
+  const unsigned frozen = 1U << kYaw | 1U << ExtendedState::kLength;
+  static_cast<void>(UpdateExtended(*edge, state, false, frozen));
+}
+void KeepInside(const CameraLook&, const CameraMeasurement&, const FilterSettings&,
+                ExtendedState&) {}
+
 enum class Span { kFits, kTooWide, kTooDeep };
 
 // What the spread of the cluster says about the size.
-Span LearnSpan(const RadarLook& look, const RadarMeasurement& z, ObjectClass object_class,
-               const FilterSettings& settings, ExtendedState& state) {
+Span LearnSpan(const RadarLook& look, const RadarMeasurement& z, const FilterSettings& settings,
+               ExtendedState& state) {
   if (settings.point_targets || z.visible_share < kSpanShare) return Span::kFits;
   const auto span = LinearizeSpan(state, look.ego, look.radar, z);
   if (!span) return Span::kFits;
@@ -120,12 +162,11 @@ Span LearnSpan(const RadarLook& look, const RadarMeasurement& z, ObjectClass obj
   if (!UpdateExtended(*span, grown)) return Span::kFits;
   // A span bounds the length from below. Lorries show their far end last, so that it must not make
   // their length certain.
-  if (IsLong(object_class)) grown.covariance = state.covariance;
+  grown.covariance = state.covariance;
   state = grown;
   return Span::kFits;
 }
-Span LearnSpan(const CameraLook&, const CameraMeasurement&, ObjectClass, const FilterSettings&,
-               ExtendedState&) {
+Span LearnSpan(const CameraLook&, const CameraMeasurement&, const FilterSettings&, ExtendedState&) {
   return Span::kFits;
 }
 
@@ -145,7 +186,7 @@ std::optional<Likelihood> EvaluateOddSize(const CameraLook& look, const CameraMe
   if (!(named.distance_squared > kOddBox)) return std::nullopt;
   ExtendedState open = state;
   ReopenSize(IsWider(look, z, state), look.origin_O(), open);
-  const auto model = Linearize(open, open.assumed_extent(), look, z);
+  const auto model = Linearize(open, open.assumed_extent(), look, z, 0.0);
   if (!model) return std::nullopt;
   auto likelihood = EvaluateExtended(*model, open);
   if (!likelihood) return std::nullopt;
@@ -182,7 +223,7 @@ ExtendedState VehicleAt(const PointFilter& point, double yaw_rad, double yaw_sig
   const Eigen::Vector2d offset = offset_O(forward, size);
   const Eigen::Vector2d centre = point.position() - offset;
   const double speed = has_direction ? v.norm() : v.dot(forward);
-  out.mean << centre, yaw, speed, 0.0, 0.0, size.length_m, size.width_m;
+  out.mean << centre, yaw, speed, 0.0, 0.0, size.length_m, size.width_m, 0.0, 0.0;
 
   // Inputs: point, velocity, yaw (where only assumed), length, width.
   Eigen::Matrix<double, ExtendedState::kSize, 7> J =
@@ -220,6 +261,7 @@ ExtendedState VehicleAt(const PointFilter& point, double yaw_rad, double yaw_sig
   out.covariance = JP.lazyProduct(J.transpose());
   out.covariance(kYawRate, kYawRate) = kInitialYawRateSigma_radps * kInitialYawRateSigma_radps;
   out.covariance(kAccel, kAccel) = kInitialAccelSigma_mps2 * kInitialAccelSigma_mps2;
+  AssumeOffsets(out);
   return out;
 }
 
@@ -240,6 +282,7 @@ VehicleFilter& VehicleFilter::operator=(const VehicleFilter& other) {
   odd_boxes_ = other.odd_boxes_;
   odd_spans_ = other.odd_spans_;
   is_deep_ = other.is_deep_;
+  usual_depth_ = other.usual_depth_;
   return *this;
 }
 
@@ -289,7 +332,7 @@ std::optional<Likelihood> VehicleFilter::Evaluate(const Look& look, const Measur
         state = &named;
       }
     }
-    const auto model = Linearize(*state, AssumedExtent(*state, settings), look, z);
+    const auto model = Linearize(*state, AssumedExtent(*state, settings), look, z, usual_depth_);
     if (!model) continue;
     auto likelihood = EvaluateExtended(*model, *state);
     if (!likelihood) continue;
@@ -318,7 +361,7 @@ bool VehicleFilter::IsOdd(const Look& look, const Measurement& z,
                           const FilterSettings& settings) const {
   if constexpr (kLearnsSize<Measurement>) {
     if (settings.point_targets) return false;
-    const auto model = Linearize(best(), AssumedExtent(best(), settings), look, z);
+    const auto model = Linearize(best(), AssumedExtent(best(), settings), look, z, 0.0);
     const auto named = model ? EvaluateExtended(*model, best()) : std::nullopt;
     return named && EvaluateOddSize(look, z, *named, best());
   } else {
@@ -336,15 +379,17 @@ void VehicleFilter::Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O) {
 }
 
 template <class Look, class Measurement>
-bool VehicleFilter::Update(const Look& look, const Measurement& z, ObjectClass object_class,
-                           bool is_young, const FilterSettings& settings) {
+bool VehicleFilter::Update(const Look& look, const Measurement& z, bool is_young,
+                           const FilterSettings& settings) {
   if (IsOdd(look, z, settings)) {
     // One such box may show two vehicles as one.
-    if (++odd_boxes_ < kOddBoxes) return true;
-    Reopen(IsWider(look, z, best()), look.origin_O());
+    const bool is_larger = IsWider(look, z, best());
+    if (++odd_boxes_ < (is_larger ? kLargerBoxes : kSmallerBoxes)) return true;
+    Reopen(is_larger, look.origin_O());
   } else if (kLearnsSize<Measurement>) {
     odd_boxes_ = 0;
   }
+  NoteDepth(look, z, settings);
   std::array<double, kMostAxes> fit{};
   std::size_t kept = 0;
   Span best_fit = Span::kTooDeep;
@@ -352,14 +397,16 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, ObjectClass o
     Component& component = components_[i];
     double log_likelihood = 0.0;
     if (count_ > 1 && SpeaksOfAxis(z)) {
-      const auto model =
-          Linearize(component.state, AssumedExtent(component.state, settings), look, z);
+      const auto model = Linearize(component.state, AssumedExtent(component.state, settings), look,
+                                   z, usual_depth_);
       const auto likelihood = model ? EvaluateExtended(*model, component.state) : std::nullopt;
       if (!likelihood) continue;
       log_likelihood = -0.5 * (likelihood->distance_squared + likelihood->log_det);
     }
-    if (!UpdateState(look, z, is_young, settings, component.state)) continue;
-    best_fit = std::min(best_fit, LearnSpan(look, z, object_class, settings, component.state));
+    if (!UpdateState(look, z, is_young, has_driven_, usual_depth_, settings, component.state))
+      continue;
+    KeepInside(look, z, settings, component.state);
+    best_fit = std::min(best_fit, LearnSpan(look, z, settings, component.state));
     fit[kept] = log_likelihood;
     if (kept != i) components_[kept] = component;
     ++kept;
@@ -376,6 +423,19 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, ObjectClass o
   if (count_ > 1) Weigh(std::span(fit).first(count_));
   TurnRound();
   return true;
+}
+
+// Where scan after scan lies deep (or near), it is the filter that is off.
+template <class Look, class Measurement>
+void VehicleFilter::NoteDepth(const Look& look, const Measurement& z,
+                              const FilterSettings& settings) {
+  if constexpr (!kLearnsSize<Measurement>) {
+    const auto model = LinearizeRadar(best().mean.head<kStateSize>(),
+                                      AssumedExtent(best(), settings), look.ego, look.radar, z);
+    if (!model || model->O.rows() == 0) return;
+    const double depth = std::clamp(DepthOf(*model, best()), -kMostDepth, kMostDepth);
+    usual_depth_ += kDepthMemory * (depth - usual_depth_);
+  }
 }
 
 // New weights; drops the components that lost, and one of two that have come to agree.
@@ -465,9 +525,9 @@ template std::optional<Likelihood> VehicleFilter::Evaluate(const RadarLook&,
 template std::optional<Likelihood> VehicleFilter::Evaluate(const CameraLook&,
                                                            const CameraMeasurement&, ObjectClass,
                                                            const FilterSettings&) const;
-template bool VehicleFilter::Update(const RadarLook&, const RadarMeasurement&, ObjectClass, bool,
+template bool VehicleFilter::Update(const RadarLook&, const RadarMeasurement&, bool,
                                     const FilterSettings&);
-template bool VehicleFilter::Update(const CameraLook&, const CameraMeasurement&, ObjectClass, bool,
+template bool VehicleFilter::Update(const CameraLook&, const CameraMeasurement&, bool,
                                     const FilterSettings&);
 
 }  // namespace v2vouch

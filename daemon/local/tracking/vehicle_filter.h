@@ -60,10 +60,9 @@ class VehicleFilter {
                                                    ObjectClass object_class,
                                                    const FilterSettings& settings) const;
   /// @param is_young linearised twice: range rate bends strongly over an uncertain heading.
-  /// @param object_class what a camera called it; bounds what a cluster's span may teach.
   /// @return false on numerical failure in every component.
   template <class Look, class Measurement>
-  bool Update(const Look& look, const Measurement& z, ObjectClass object_class, bool is_young,
+  bool Update(const Look& look, const Measurement& z, bool is_young,
               const FilterSettings& settings);
 
   /// A whole pose; to be asked only where knows_direction().
@@ -101,6 +100,8 @@ class VehicleFilter {
   };
   template <class Look, class Measurement>
   bool IsOdd(const Look& look, const Measurement& z, const FilterSettings& settings) const;
+  template <class Look, class Measurement>
+  void NoteDepth(const Look& look, const Measurement& z, const FilterSettings& settings);
   void Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O);
   void Weigh(std::span<const double> log_likelihoods);
   void TurnRound();
@@ -109,9 +110,10 @@ class VehicleFilter {
   std::size_t count_ = 0;
   bool has_driven_ = false;  // Seen in motion: front and rear are told apart.
   bool is_size_open_ = false;
-  int odd_boxes_ = 0;     // In a row that fit another size.
-  int odd_spans_ = 0;     // Clusters too wide for it, three each, less those that were not.
-  bool is_deep_ = false;  // One of them was too deep: none is taken off.
+  int odd_boxes_ = 0;         // In a row that fit another size.
+  int odd_spans_ = 0;         // Clusters too wide for it, three each, less those that were not.
+  double usual_depth_ = 0.0;  // Of the outline's returns behind the expected one, in sigmas.
+  bool is_deep_ = false;      // One of them was too deep: none is taken off.
 };
 
 /// The same motion with front and rear exchanged.

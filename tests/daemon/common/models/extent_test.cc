@@ -10,6 +10,8 @@
 namespace v2vouch {
 namespace {
 
+const double kLorry_m = ClassExtent(ObjectClass::kTruck).length_m;
+
 ExtendedState LeadCar(ObjectClass object_class) {
   const Extent size = ClassExtent(object_class);
   ExtendedState state;
@@ -30,7 +32,7 @@ TEST(AssumeClass, NamingATruckMovesItsCentreAndKeepsItsRear) {
   ExtendedState state = LeadCar(ObjectClass::kUnknown);
   const double rear = state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength];
   AssumeClass(ObjectClass::kUnknown, ObjectClass::kTruck, state);
-  EXPECT_NEAR(state.mean[ExtendedState::kLength], 13.0, 1e-6);
+  EXPECT_NEAR(state.mean[ExtendedState::kLength], kLorry_m, 1e-6);
   EXPECT_NEAR(state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength], rear, 1e-6);
   EXPECT_NEAR(state.extent().length_sigma_m, 3.5, 1e-6);
   const Eigen::SelfAdjointEigenSolver<ExtendedState::Matrix> solver(state.covariance);
@@ -52,8 +54,8 @@ TEST(AssumeLongClass, KeepsTheNearFaceAndTiesTheCentreToTheLength) {
   const double rear = state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength];
   AssumeLongClass(ObjectClass::kTruck, Eigen::Vector2d::Zero(), state);
   const double length_variance = 3.5 * 3.5;
-  EXPECT_NEAR(state.mean[ExtendedState::kLength], 13.0, 1e-9);
-  EXPECT_NEAR(state.mean[kX] - 6.5, rear, 1e-9);
+  EXPECT_NEAR(state.mean[ExtendedState::kLength], kLorry_m, 1e-9);
+  EXPECT_NEAR(state.mean[kX] - 0.5 * kLorry_m, rear, 1e-9);
   EXPECT_NEAR(state.covariance(kX, ExtendedState::kLength), 0.5 * length_variance, 1e-9);
   // A better range of the face moves the whole lorry and leaves its length alone.
   Linearized face;
@@ -64,8 +66,8 @@ TEST(AssumeLongClass, KeepsTheNearFaceAndTiesTheCentreToTheLength) {
   face.E << -0.5, 0.0;
   face.R = Eigen::MatrixXd::Constant(1, 1, 0.01);
   ASSERT_TRUE(UpdateExtended(face, state));
-  EXPECT_NEAR(state.mean[kX] - 6.5, rear + 1.0, 0.02);
-  EXPECT_NEAR(state.mean[ExtendedState::kLength], 13.0, 0.02);
+  EXPECT_NEAR(state.mean[kX] - 0.5 * kLorry_m, rear + 1.0, 0.02);
+  EXPECT_NEAR(state.mean[ExtendedState::kLength], kLorry_m, 0.02);
   EXPECT_GT(std::sqrt(state.covariance(kX, kX)), 1.7);
 }
 

@@ -179,5 +179,24 @@ TEST(ProcessCamera, APictureOfAnotherSizeIsScaled) {
   EXPECT_DOUBLE_EQ(full.depression_rad, half.depression_rad);
 }
 
+TEST(ProcessCamera, WhatIsAsLowAsACarIsNoLorryWhateverItIsCalled) {
+  const CameraConfig camera;  // Level, so that heights follow from the rows.
+  const auto named = [&](double height_m, double range_m, ObjectClass object_class) {
+    const double foot_px = camera.cy_px + camera.fy_px * camera.z_m / range_m;
+    const double top_px = foot_px - camera.fy_px * height_m / range_m;
+    CameraDetections detections;
+    detections.boxes = {Box(600.0, top_px, 90.0, foot_px - top_px, 0.9, object_class)};
+    std::vector<CameraMeasurement> m;
+    ProcessCamera(detections, camera, m);
+    return m.at(0).object_class;
+  };
+  EXPECT_EQ(named(1.45, 15.0, ObjectClass::kTruck), ObjectClass::kCar);
+  EXPECT_EQ(named(1.45, 15.0, ObjectClass::kBus), ObjectClass::kCar);
+  EXPECT_EQ(named(3.5, 15.0, ObjectClass::kTruck), ObjectClass::kTruck);
+  EXPECT_EQ(named(1.45, 15.0, ObjectClass::kVan), ObjectClass::kVan);
+  // Far away a row is worth too much.
+  EXPECT_EQ(named(2.2, 80.0, ObjectClass::kTruck), ObjectClass::kTruck);
+}
+
 }  // namespace
 }  // namespace v2vouch

@@ -192,9 +192,28 @@ TEST(RadarPreprocessor, CovarianceIsThatOfASampleMean) {
                               std::pow(kFront.range_rate_sigma_mps, 2));
   EXPECT_TRUE(one.covariance.diagonal().isApprox(noise));
   EXPECT_TRUE(four.covariance.diagonal().isApprox(noise / 4.0));
-  // Two, 2 m apart along the ray: s^2 = 2, of the mean 1.
-  const auto two = Process(kFront, Ego(0.0), {Plain(20.0, 0.0, 5.0), Plain(21.5, 0.0, 5.0)}).at(0);
-  EXPECT_NEAR(two.covariance(0, 0), 1.5 * 1.5 / 4.0, 1e-12);
+  // Two on one outline, 0.6 m apart along the ray: of their mean 0.6^2 / 4.
+  const auto two = Process(kFront, Ego(0.0), {Plain(20.0, 0.0, 5.0), Plain(20.6, 0.0, 5.0)}).at(0);
+  EXPECT_NEAR(two.covariance(0, 0), 0.6 * 0.6 / 4.0, 1e-12);
+}
+
+TEST(RadarPreprocessor, WeakReturnsFromInsideACarDoNotMoveItsReference) {
+  // As other simulators and real radars have it: the bumper, and what lies under the car.
+  const auto strong = [](double range_m, double azimuth_rad, double snr_db) {
+    RadarDetection d = Plain(range_m, azimuth_rad, 5.0);
+    d.snr_db = snr_db;
+    return d;
+  };
+  const auto m = Process(kFront, Ego(0.0),
+                         {strong(20.0, 0.01, 45.0), strong(20.1, -0.01, 41.0),
+                          strong(20.9, 0.02, 24.0), strong(21.7, -0.02, 19.0)});
+  ASSERT_EQ(m.size(), 1U);
+  EXPECT_NEAR(m[0].range_m, 20.05, 0.01);
+  EXPECT_EQ(m[0].outline_count, 2U);
+  EXPECT_EQ(m[0].returns, 4);
+  EXPECT_NEAR(m[0].radial_extent_m, 1.7, 1e-9);
+  EXPECT_NEAR(m[0].middle_azimuth_rad, 0.0, 1e-9);
+  EXPECT_DOUBLE_EQ(m[0].azimuth_max_rad, 0.02);
 }
 
 TEST(RadarPreprocessor, RangeRateIsThatOfTheReferencePointForAWideClusterToo) {

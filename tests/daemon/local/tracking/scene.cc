@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/data/outline.h"
 
 namespace v2vouch {
 namespace {
@@ -93,6 +94,7 @@ std::vector<RadarMeasurement> Scene::Scan(int index) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::Vector3d squares = Eigen::Vector3d::Zero();
     Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
+    std::vector<OutlineReturn> outline;
     for (const Eigen::Vector2d& p : points) {
       const Eigen::Vector2d line = p - origin;
       const Eigen::Vector2d r = p - car.p_W;
@@ -104,6 +106,7 @@ std::vector<RadarMeasurement> Scene::Scan(int index) {
           WrapAngle(std::atan2(line.y(), line.x()) - axis) +
               random_.Normal(0.0, radar.azimuth_sigma_rad),
           line.normalized().dot(v - v_antenna) + random_.Normal(0.0, radar.range_rate_sigma_mps));
+      outline.push_back({one[0], one[1], 0.0});
       sum += one;
       squares += one.cwiseAbs2();
       low = low.cwiseMin(one);
@@ -128,6 +131,12 @@ std::vector<RadarMeasurement> Scene::Scan(int index) {
     z.radial_extent_m = high[0] - low[0];
     z.azimuth_min_rad = low[1];
     z.azimuth_max_rad = high[1];
+    z.middle_azimuth_rad = mean[1];
+    if (extended) {
+      KeepOutline(outline);
+      z.outline_count = std::min(outline.size(), RadarMeasurement::kMostOutline);
+      std::copy_n(outline.begin(), z.outline_count, z.outline.begin());
+    }
     scan.push_back(z);
   };
   const auto in_view = [&](const Eigen::Vector2d& p) {
