@@ -53,7 +53,9 @@ TEST(ObjectTracking, BoxesAloneStartConfirmAndNameATrack) {
   for (int k = 0; k < 10; ++k) {
     stand.Advance();
     stand.Boxes({stand.At(20.0 + k, 3.0)});
-    if (k == 0) EXPECT_TRUE(stand.Confirmed().empty()) << "one box may be false";
+    if (k == 0) {
+      EXPECT_TRUE(stand.Confirmed().empty()) << "one box may be false";
+    }
   }
   const auto tracks = stand.Confirmed();
   ASSERT_EQ(tracks.size(), 1U);
@@ -92,7 +94,7 @@ TEST(ObjectTracking, AbsenceWhereTheSourceSeesEndsATrackAndElsewhereSaysNothing)
       stand->Boxes({stand->At(20.0, 3.0)});
     }
   }
-  for (int k = 0; k < 5; ++k) {
+  for (int k = 0; k < 10; ++k) {
     seen.Advance();
     seen.Boxes({});
     unseen.Advance();
