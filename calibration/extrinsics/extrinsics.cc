@@ -106,10 +106,10 @@ std::map<std::string, int> MessagesOf(const DriveLog& log, const VehicleConfig& 
   std::map<std::string, int> messages;
   std::vector<std::string> radars, cameras;
   for (const RadarConfig& radar : vehicle.radars) {
-    messages[radars.emplace_back("radar_" + SensorKey(radar.name))] = 0;
+    messages[radars.emplace_back("radar_" + LowerCaseName(radar.name))] = 0;
   }
   for (const CameraConfig& camera : vehicle.cameras) {
-    messages[cameras.emplace_back("camera_" + SensorKey(camera.name))] = 0;
+    messages[cameras.emplace_back("camera_" + LowerCaseName(camera.name))] = 0;
   }
   for (const RadarScan& scan : log.scans) ++messages[radars[static_cast<std::size_t>(scan.radar)]];
   for (const CameraDetections& picture : log.pictures) {

@@ -20,13 +20,13 @@ MountingParameters::MountingParameters(const VehicleConfig& vehicle, const Mount
         {sensor + "." + quantity, sensor, prior, prior_std, to_unit, is_anchor, false});
   };
   for (const RadarConfig& radar : vehicle.radars) {
-    sensor = "radar_" + SensorKey(radar.name);
+    sensor = "radar_" + LowerCaseName(radar.name);
     add("x_m", radar.x_m, priors.place_m);
     add("y_m", radar.y_m, priors.place_m);
     add("yaw_deg", radar.yaw_rad, priors.angle_rad, kDegrees);
   }
   for (const CameraConfig& camera : vehicle.cameras) {
-    sensor = "camera_" + SensorKey(camera.name);
+    sensor = "camera_" + LowerCaseName(camera.name);
     add("x_m", camera.x_m, priors.place_m);
     add("y_m", camera.y_m, priors.place_m);
     for (auto d = descriptions_.end() - 2; d != descriptions_.end(); ++d) {

@@ -14,11 +14,12 @@ struct Overloaded : Fs... {
 
 /// Rank of the kinds of source at equal times: the ego's motion first, so that a frame of the same
 /// instant finds it; claims last, so that they meet the newest tracks.
-enum Rank { kEgoRank, kGnssRank, kRadarRank, kCameraRank, kClaimRank };
+enum Rank { kEgoRank, kGnssRank, kRadarRank, kCameraRank, kObjectsRank, kClaimRank };
 
 inline bool HasFrame(const TimelineInput& input) {
   return std::holds_alternative<RadarScan>(input) ||
-         std::holds_alternative<CameraDetections>(input);
+         std::holds_alternative<CameraDetections>(input) ||
+         std::holds_alternative<ObjectList>(input);
 }
 
 inline bool IsLocal(const TimelineInput& input) {

@@ -24,6 +24,10 @@ NoticeSubject SourceOf(const RadarScan& scan) {
 NoticeSubject SourceOf(const CameraDetections& boxes) {
   return {SubjectKind::kCamera, static_cast<std::uint32_t>(boxes.camera)};
 }
+NoticeSubject SourceOf(const ObjectList& list) {
+  return {SubjectKind::kObjects, static_cast<std::uint32_t>(list.sensor)};
+}
+
 // What is not known of the ego's own motion `gap_s` after its last sample, for lists that are read
 // from the ego: it may have braked or steered since. Accelerations of 2 m/s^2 either way are one
 // sigma, and so is a change of the yaw rate by 0.1 rad/s in a second.
@@ -353,12 +357,8 @@ void Perception::CollectNotices(std::vector<Notice>& notices) const {
   state_->timeline.priority().CollectNotices(notices);
 }
 
-bool Perception::IsRadarAlive(int radar) const {
-  return state_->timeline.local().IsRadarAlive(radar);
-}
-
-bool Perception::IsCameraAlive(int camera) const {
-  return state_->timeline.local().IsCameraAlive(camera);
+bool Perception::IsAlive(SensorKey sensor) const {
+  return state_->timeline.local().IsAlive(sensor);
 }
 
 }  // namespace v2vouch

@@ -51,9 +51,8 @@ class Perception {
   [[nodiscard]] const BiasReport& bias_report() const;
   /// Adds the conditions that hold now (daemon/common/base/notice.h).
   void CollectNotices(std::vector<Notice>& notices) const;
-  /// Whether each configured sensor has spoken within three of its periods; radars, then cameras.
-  [[nodiscard]] bool IsRadarAlive(int radar) const;
-  [[nodiscard]] bool IsCameraAlive(int camera) const;
+  /// Whether a configured sensor has spoken within three of its periods.
+  [[nodiscard]] bool IsAlive(SensorKey sensor) const;
 
  private:
   struct State;

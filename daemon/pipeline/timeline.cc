@@ -40,6 +40,9 @@ EventKey KeyOf(const TimelineInput& input) {
                  [](const CameraDetections& m) {
                    return EventKey{m.stamp, kCameraRank, m.camera, m.seq};
                  },
+                 [](const ObjectList& m) {
+                   return EventKey{m.stamp, kObjectsRank, m.sensor, m.seq};
+                 },
                  [](const TimedClaim& m) {
                    return EventKey{m.claim.received, kClaimRank, m.claim.sender, m.seq};
                  }},

@@ -36,7 +36,8 @@ struct TimedClaim {
   std::optional<BiasEstimate> bias;
 };
 
-using TimelineInput = std::variant<EgoMotion, GnssFix, RadarScan, CameraDetections, TimedClaim>;
+using TimelineInput =
+    std::variant<EgoMotion, GnssFix, RadarScan, CameraDetections, ObjectList, TimedClaim>;
 
 EventKey KeyOf(const TimelineInput& input);
 

@@ -19,9 +19,11 @@ std::uint64_t Hash(std::string_view text, std::uint64_t seed) {  // FNV-1a.
 
 void NameSource(const EventKey& key, Diagnostic& diagnostic) {
   constexpr InputSource kSources[] = {InputSource::kEgoMotion, InputSource::kGnss,
-                                      InputSource::kRadar, InputSource::kCamera, InputSource::kBsm};
+                                      InputSource::kRadar,     InputSource::kCamera,
+                                      InputSource::kObjects,   InputSource::kBsm};
   diagnostic.source = kSources[key.rank];
-  const bool is_sensor = key.rank == kRadarRank || key.rank == kCameraRank;
+  const bool is_sensor =
+      key.rank == kRadarRank || key.rank == kCameraRank || key.rank == kObjectsRank;
   diagnostic.sensor = is_sensor ? static_cast<int>(key.channel) : 0;
 }
 
@@ -44,15 +46,17 @@ int Timeline::RunLocal(std::size_t from, Outputs& outputs) {
       if (refusal) return step_.Refuse(*refusal, event.key.time);
       for (const Reason failure : local_.failures()) step_.Refuse(failure, event.key.time);
     };
-    std::visit(Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
-                          [&](const RadarScan& scan) {
-                            keep(local_.OnRadarScan(scan, event.radar, event.frame));
-                          },
-                          [&](const CameraDetections& boxes) {
-                            keep(local_.OnCameraDetections(boxes, event.frame));
-                          },
-                          [](const GnssFix&) {}, [](const TimedClaim&) {}},
-               event.input);
+    std::visit(
+        Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
+                   [&](const RadarScan& scan) {
+                     keep(local_.OnRadarScan(scan, event.radar, event.frame));
+                   },
+                   [&](const CameraDetections& boxes) {
+                     keep(local_.OnCameraDetections(boxes, event.frame));
+                   },
+                   [&](const ObjectList& list) { keep(local_.OnObjectList(list, event.frame)); },
+                   [](const GnssFix&) {}, [](const TimedClaim&) {}},
+        event.input);
     frames += HasFrame(event.input) ? 1 : 0;
     if (event.after) event.after->local = local_;
     EmitOnce(event, step_, outputs);

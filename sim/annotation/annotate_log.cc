@@ -40,6 +40,7 @@ struct Contents {
   std::map<std::int64_t, track_list_t> local;
   std::map<std::int64_t, track_list_t> priority;
   std::int64_t images = 0;
+  bool has_other_lists = false;
 };
 
 template <class Message>
@@ -50,8 +51,10 @@ void Keep(const LogEvent& event, std::map<std::int64_t, Message>& kept) {
 }
 
 // What is stale is a copy made while nothing came in.
-void KeepList(const LogEvent& event, std::map<std::int64_t, track_list_t>& kept) {
+void KeepList(const LogEvent& event, std::map<std::int64_t, track_list_t>& kept,
+              bool& has_other_lists) {
   auto list = wire::Decode<track_list_t>(event.bytes);
+  has_other_lists = has_other_lists || (!list && list.reason() == Reason::kWrongType);
   if (list && list->stale == 0) kept.insert_or_assign(list->utime, std::move(*list));
 }
 
@@ -101,6 +104,7 @@ class Annotation {
   bool Run(const PictureSink& sink, std::string& error) {
     if (!ReadVehicle(error) || !ChooseCamera(error) || !ReadContents(error)) return false;
     result_.has_images = contents_.images > 0;
+    result_.has_other_lists = contents_.has_other_lists;
     result_.has_lists = !contents_.local.empty() || !contents_.priority.empty();
     result_.frames =
         result_.has_images ? contents_.images : static_cast<std::int64_t>(contents_.boxes.size());
@@ -185,8 +189,12 @@ class Annotation {
         Keep(event, contents_.boxes);
       }
       if (event.channel.starts_with(names.camera_prefix)) other_cameras_.insert(event.channel);
-      if (event.channel == names.tracks_local) KeepList(event, contents_.local);
-      if (event.channel == names.tracks_priority) KeepList(event, contents_.priority);
+      if (event.channel == names.tracks_local) {
+        KeepList(event, contents_.local, contents_.has_other_lists);
+      }
+      if (event.channel == names.tracks_priority) {
+        KeepList(event, contents_.priority, contents_.has_other_lists);
+      }
       if (is_first) first_us_ = ToMicros(event.received);
       is_first = false;
     }

@@ -23,6 +23,7 @@ struct AnnotationResult {
   std::int64_t pictures = 0;  ///< Handed out.
   std::int64_t unread = 0;    ///< Frames whose picture could not be read; drawn on an empty road.
   bool has_images = false;    ///< False: the log has boxes only.
+  bool has_other_lists = false;  ///< Lists of another version of track_list_t: not drawn.
   bool has_lists = false;  ///< False: no TRACKS_LOCAL and no TRACKS_PRIORITY, so no track is drawn.
   bool is_bad_request = false;  ///< The vehicle file or the camera's name is wrong, not the log.
 };

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "daemon/common/base/angle.h"
-#include "daemon/local/tracking/box_measurement.h"
+#include "daemon/common/data/measurement.h"
 #include "daemon/local/tracking/tracker.h"
 
 namespace v2vouch::bench {

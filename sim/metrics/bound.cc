@@ -73,7 +73,7 @@ class Walk {
     fused_.AddSensor(sensor, *ego, *target, p);
     looks_ += p;
     // A standing radar return starts no LOCAL track by itself: it may be a post.
-    if (!sensor.is_radar || std::abs(target->speed_mps) >= settings_.moving_mps) {
+    if (sensor.kind != SensorKind::kRadar || std::abs(target->speed_mps) >= settings_.moving_mps) {
       starting_looks_ += p;
       last_starting_ = look.received;
     }

@@ -104,15 +104,24 @@ void InformationFilter::AddSensor(const SensorSpec& sensor, const PlanarMotion& 
   const Eigen::Vector2d w(-u.y(), u.x());
 
   Vector row = Vector::Zero();
+  if (sensor.kind == SensorKind::kObjects) {
+    for (int axis = 0; axis < 2; ++axis) {
+      row.setZero();
+      row(kPosition + axis) = 1.0;
+      Add(row, sensor.position_sigma_m, detection_probability);
+    }
+    return;
+  }
+  const bool is_radar = sensor.kind == SensorKind::kRadar;
   row.segment<2>(kPosition) = w / range;
   const double off_axis = std::atan2(u.y(), u.x()) - ego.yaw_rad - sensor.yaw_rad;
   // An edge's pixel noise spans less angle away from a camera's axis.
-  const double foreshortening = sensor.is_radar ? 1.0 : std::cos(off_axis) * std::cos(off_axis);
+  const double foreshortening = is_radar ? 1.0 : std::cos(off_axis) * std::cos(off_axis);
   Add(row, sensor.azimuth_sigma_rad * std::max(foreshortening, 0.1), detection_probability);
 
   row.setZero();
   row.segment<2>(kPosition) = u;
-  if (!sensor.is_radar) {
+  if (!is_radar) {
     // Depression of the foot point: d(delta)/dr = -h / (r^2 + h^2).
     const double per_rad = (range * range + sensor.z_m * sensor.z_m) / std::max(sensor.z_m, 0.1);
     return Add(row, sensor.depression_sigma_rad * per_rad, detection_probability);

@@ -42,18 +42,18 @@ double DetectionProbability(const TruthSample& sample, const SensorSpec& sensor)
   for (const TruthLook& look : sample.looks) {
     if (look.sensor == channel) return look.detection_probability;
     if (look.sensor != bare) continue;
-    if (found == nullptr || !sensor.is_radar) found = &look;
+    if (found == nullptr || sensor.kind != SensorKind::kRadar) found = &look;
   }
   return found == nullptr ? 0.0 : std::clamp(found->detection_probability, 0.0, 1.0);
 }
 
-bool IsSeenByBoth(const TruthSample& sample, const SceneSpecs& specs) {
-  const auto sees = [&](bool by_radar) {
+bool IsSeenByEnough(const TruthSample& sample, const SceneSpecs& specs) {
+  const auto sees = [&](SensorKind kind) {
     return std::ranges::any_of(specs.sensors, [&](const SensorSpec& sensor) {
-      return sensor.is_radar == by_radar && DetectionProbability(sample, sensor) >= kSeeing;
+      return sensor.kind == kind && DetectionProbability(sample, sensor) >= kSeeing;
     });
   };
-  return sees(true) && sees(false);
+  return std::ranges::count_if(kAllSensorKinds, sees) >= specs.KindsThatCheck();
 }
 
 }  // namespace v2vouch::evaluation

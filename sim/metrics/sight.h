@@ -27,7 +27,7 @@ inline constexpr double kSeeing = 0.5;
 /// radar first and the camera last.
 double DetectionProbability(const TruthSample& sample, const SensorSpec& sensor);
 
-/// Whether a radar and a camera see it (`kSeeing` each).
-bool IsSeenByBoth(const TruthSample& sample, const SceneSpecs& specs);
+/// Whether as many kinds of sensors see it (`kSeeing` each) as KindsThatCheck() asks for.
+bool IsSeenByEnough(const TruthSample& sample, const SceneSpecs& specs);
 
 }  // namespace v2vouch::evaluation

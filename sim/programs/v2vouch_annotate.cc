@@ -78,7 +78,12 @@ int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folde
   if (!result.has_images) {
     Complain("note: the log holds no pictures of this camera: boxes are drawn on an empty road", 0);
   }
-  if (!result.has_lists) {
+  if (!result.has_lists && result.has_other_lists) {
+    Complain(
+        "note: the log's track lists are of another version of track_list_t (its fingerprint "
+        "differs; CHANGELOG.md), so no tracks are drawn; v2vouch-replay makes them anew",
+        0);
+  } else if (!result.has_lists) {
     Complain(
         "note: the log holds no track lists, so no tracks are drawn; v2vouch-replay makes them", 0);
   }

@@ -105,6 +105,7 @@ int PrintSummary(const std::string& path, const v2vouch::evaluation::RunLog& log
   const bool has_lists =
       std::ranges::any_of(log.lists, [](const auto& lists) { return !lists.empty(); });
   if (has_lists) return kGood;
+  if (!log.other_types.empty()) return Complain(path + ": " + OtherTypesText(log.other_types));
   return Complain(path + ": holds no track lists; `v2vouch-replay LOG --out OUT` makes them");
 }
 

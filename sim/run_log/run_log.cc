@@ -10,6 +10,7 @@
 #include <v2vouch/bsm_verdict_t.hpp>
 #include <v2vouch/camera_detections_t.hpp>
 #include <v2vouch/misbehavior_report_t.hpp>
+#include <v2vouch/object_list_t.hpp>
 #include <v2vouch/radar_scan_t.hpp>
 #include <v2vouch/text_t.hpp>
 #include <v2vouch/track_list_t.hpp>
@@ -51,6 +52,7 @@ class Reader {
     if (channel == "SIM_SCENARIO") return TakeText(event, scenario_);
     if (channel == "V2VOUCH_CONFIG") return TakeText(event, config_);
     if (channel.starts_with("RADAR_")) return TakeLook<radar_scan_t>(event);
+    if (channel.starts_with("OBJECTS_")) return TakeLook<object_list_t>(event);
     if (!channel.starts_with("CAMERA_") || channel.ends_with("_IMAGE")) return;
     TakeLook<camera_detections_t>(event);
   }
@@ -74,6 +76,7 @@ class Reader {
     Result<T> message = wire::Decode<T>(event.bytes);
     if (!message) {
       ++log_.refused;
+      if (message.reason() == Reason::kWrongType) ++log_.other_types[event.channel];
       return std::nullopt;
     }
     return std::move(*message);
@@ -314,6 +317,17 @@ std::string SpanText(double seconds) {
 
 }  // namespace
 
+std::string OtherTypesText(const std::map<std::string, std::int64_t>& other_types) {
+  std::string channels;
+  for (const auto& [channel, count] : other_types) {
+    channels += (channels.empty() ? "" : ", ") + channel + " (" + std::to_string(count) + ")";
+  }
+  return "Messages of another version of their type (the fingerprint differs): " + channels +
+         ". track_t changed in 2026-11 (CHANGELOG.md): make the lists anew with `v2vouch-replay "
+         "LOG "
+         "--out OUT`, or read them with the build that wrote them";
+}
+
 std::string WhyNotJudged(const RunLog& log) {
   if (log.truth.empty()) {
     return "holds no TRUTH, so nothing can be judged. `--summary` counts its lists";
@@ -328,6 +342,9 @@ std::string WhyNotJudged(const RunLog& log) {
   }
   const auto& local = log.lists[Index(ListKind::kLocal)];
   const auto& priority = log.lists[Index(ListKind::kPriority)];
+  if (local.empty() && priority.empty() && !log.other_types.empty()) {
+    return "holds no list that this build can read. " + OtherTypesText(log.other_types);
+  }
   if (local.empty() && priority.empty()) {
     return "holds no TRACKS_LOCAL and no TRACKS_PRIORITY, so there is nothing to judge; "
            "`v2vouch-replay LOG --out OUT` makes them";

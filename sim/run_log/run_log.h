@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -112,6 +113,8 @@ struct RunLog {
   std::vector<VerdictReport> reports;
   std::int64_t events = 0;
   std::int64_t refused = 0;  ///< Messages that did not decode.
+  /// Those among them that bear the fingerprint of another type or of another version of it.
+  std::map<std::string, std::int64_t> other_types{};
   std::int64_t damaged = 0;  ///< Damaged stretches of the file.
   double log_seconds = 0.0;
   /// Where TRUTH's time steps back, or on by more than kLongestPause: the first such step.
@@ -122,6 +125,9 @@ struct RunLog {
   std::optional<TimeStep> truth_step;
   static constexpr Duration kLongestPause = std::chrono::minutes(10);
 };
+
+/// One sentence for people about RunLog::other_types, and what to do.
+std::string OtherTypesText(const std::map<std::string, std::int64_t>& other_types);
 
 /// Why this run cannot be judged against its truth, with what to do about it; "" where it can:
 /// TRUTH and lists are there, overlap in time, and TRUTH's time runs on without a step (the grid

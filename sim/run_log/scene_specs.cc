@@ -3,6 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "daemon/common/base/angle.h"
@@ -53,7 +54,7 @@ SensorSpec FromRadar(const RadarConfig& radar, double noise_scale) {
 SensorSpec FromCamera(const CameraConfig& camera, double noise_scale) {
   SensorSpec spec;
   spec.channel = "CAMERA_" + camera.name;
-  spec.is_radar = false;
+  spec.kind = SensorKind::kCamera;
   spec.x_m = camera.x_m;
   spec.y_m = camera.y_m;
   spec.z_m = camera.z_m;
@@ -65,6 +66,20 @@ SensorSpec FromCamera(const CameraConfig& camera, double noise_scale) {
   spec.azimuth_sigma_rad = noise_scale * camera.edge_sigma_px / camera.fx_px / std::sqrt(2.0);
   spec.depression_sigma_rad =
       noise_scale * std::hypot(camera.edge_sigma_px / camera.fy_px, camera.pitch_sigma_rad);
+  return spec;
+}
+
+SensorSpec FromObjects(const ObjectSensorConfig& source, double noise_scale) {
+  SensorSpec spec;
+  spec.channel = "OBJECTS_" + source.name;
+  spec.kind = SensorKind::kObjects;
+  spec.x_m = source.x_m;
+  spec.y_m = source.y_m;
+  spec.yaw_rad = source.yaw_rad;
+  spec.half_fov_rad = source.half_fov_rad;
+  spec.max_range_m = source.max_range_m;
+  spec.period_s = source.period_s;
+  spec.position_sigma_m = noise_scale * source.position_sigma_m;
   return spec;
 }
 
@@ -98,6 +113,17 @@ void ReadCamera(const YAML::Node& node, CameraConfig& camera) {
   ReadDegrees(node, "pitch_sigma_deg", camera.pitch_sigma_rad);
 }
 
+void ReadObjects(const YAML::Node& node, ObjectSensorConfig& source) {
+  source.name = NameOf(node, source.name);
+  Read(node, "x_m", source.x_m);
+  Read(node, "y_m", source.y_m);
+  ReadDegrees(node, "yaw_deg", source.yaw_rad);
+  ReadDegrees(node, "half_fov_deg", source.half_fov_rad);
+  Read(node, "max_range_m", source.max_range_m);
+  Read(node, "period_s", source.period_s);
+  Read(node, "position_sigma_m", source.position_sigma_m);
+}
+
 void ReadVehicle(const YAML::Node& node, VehicleConfig& vehicle) {
   Read(node, "length_m", vehicle.length_m);
   Read(node, "width_m", vehicle.width_m);
@@ -109,6 +135,10 @@ void ReadVehicle(const YAML::Node& node, VehicleConfig& vehicle) {
   if (const auto cameras = Child(node, "cameras"); cameras && cameras.IsSequence()) {
     vehicle.cameras.assign(cameras.size(), CameraConfig{});
     for (std::size_t i = 0; i < cameras.size(); ++i) ReadCamera(cameras[i], vehicle.cameras[i]);
+  }
+  if (const auto objects = Child(node, "objects"); objects && objects.IsSequence()) {
+    vehicle.objects.assign(objects.size(), ObjectSensorConfig{});
+    for (std::size_t i = 0; i < objects.size(); ++i) ReadObjects(objects[i], vehicle.objects[i]);
   }
 }
 
@@ -147,6 +177,11 @@ std::vector<Eigen::Vector2d> ReadOutline(const YAML::Node& building) {
 
 }  // namespace
 
+int SceneSpecs::KindsThatCheck() const {
+  const auto is_of_objects = [](const SensorSpec& s) { return s.kind == SensorKind::kObjects; };
+  return !sensors.empty() && std::ranges::all_of(sensors, is_of_objects) ? 1 : 2;
+}
+
 SceneSpecs ReadSceneSpecs(const std::string& yaml) {
   SceneSpecs specs;
   VehicleConfig vehicle;
@@ -173,6 +208,9 @@ SceneSpecs ReadSceneSpecs(const std::string& yaml) {
   for (const auto& radar : vehicle.radars) specs.sensors.push_back(FromRadar(radar, noise_scale));
   for (const auto& camera : vehicle.cameras) {
     specs.sensors.push_back(FromCamera(camera, noise_scale));
+  }
+  for (const auto& source : vehicle.objects) {
+    specs.sensors.push_back(FromObjects(source, noise_scale));
   }
   return specs;
 }

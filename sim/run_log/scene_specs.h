@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "daemon/common/data/sensor.h"
+
 namespace v2vouch::evaluation {
 
 /// What the evaluator has to know of one own sensor.
 struct SensorSpec {
-  std::string channel;  ///< RADAR_<NAME> or CAMERA_<NAME>.
-  bool is_radar = true;
+  std::string channel;  ///< RADAR_<NAME>, CAMERA_<NAME> or OBJECTS_<NAME>.
+  SensorKind kind = SensorKind::kRadar;
   double x_m = 0.0;  ///< Place in the ego body frame, z above the road.
   double y_m = 0.0;
   double z_m = 0.0;
@@ -22,6 +24,7 @@ struct SensorSpec {
   double azimuth_sigma_rad = 0.01;  ///< Camera: of a box's middle.
   double range_rate_sigma_mps = 0.1;
   double depression_sigma_rad = 0.0037;  ///< Camera: bottom edge and body pitch together.
+  double position_sigma_m = 0.3;         ///< Objects: of a box's centre, per axis.
 };
 
 /// Errors of the BSMs, as the scenario states them.
@@ -47,6 +50,10 @@ struct SceneSpecs {
   std::vector<SensorSpec> sensors;
   SenderSpec sender;
   std::vector<std::vector<Eigen::Vector2d>> buildings;  ///< Outlines in the world frame.
+
+  /// How many kinds of sensors must see a place before what is claimed there can be checked: two,
+  /// or the one where boxes are all there is.
+  [[nodiscard]] int KindsThatCheck() const;
 };
 
 /// Reads the effective scenario leniently: keys it does not know are passed over, missing ones

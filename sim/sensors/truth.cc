@@ -16,11 +16,18 @@ TruthWriter::TruthWriter(const World& world, std::uint64_t seed) : world_(world)
   const VehicleConfig& vehicle = world.vehicle();
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
     radars_.emplace_back(world, static_cast<int>(i), seed);
+    // Full channel names: sensors of two kinds may share one name.
+    names_.push_back("RADAR_" + vehicle.radars[i].name);
   }
   for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
     cameras_.emplace_back(world, static_cast<int>(i), seed);
+    names_.push_back("CAMERA_" + vehicle.cameras[i].name);
   }
-  sights_.resize(radars_.size() + cameras_.size());
+  for (std::size_t i = 0; i < vehicle.objects.size(); ++i) {
+    objects_.emplace_back(world, static_cast<int>(i), seed);
+    names_.push_back("OBJECTS_" + vehicle.objects[i].name);
+  }
+  sights_.resize(names_.size());
 }
 
 void TruthWriter::Write(const Snapshot& snapshot, std::int64_t seq, truth_list_t& truth) {
@@ -37,6 +44,9 @@ void TruthWriter::Write(const Snapshot& snapshot, std::int64_t seq, truth_list_t
   for (std::size_t i = 0; i < radars_.size(); ++i) radars_[i].Look(snapshot, sights_[i]);
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
     cameras_[i].Look(snapshot, sights_[radars_.size() + i]);
+  }
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    objects_[i].Look(snapshot, sights_[radars_.size() + cameras_.size() + i]);
   }
   truth.objects.clear();
   for (std::size_t i = 0; i < snapshot.actors.size(); ++i) {
@@ -63,10 +73,7 @@ void TruthWriter::Write(const Snapshot& snapshot, std::int64_t seq, truth_list_t
     object.is_hidden = 1;
     for (std::size_t s = 0; s < sights_.size(); ++s) {
       truth_sensor_t sensor{};
-      // Full channel names: a radar and a camera may share one name.
-      sensor.sensor = s < radars_.size()
-                          ? "RADAR_" + world_.vehicle().radars[s].name
-                          : "CAMERA_" + world_.vehicle().cameras[s - radars_.size()].name;
+      sensor.sensor = names_[s];
       sensor.detection_probability = sights_[s][i].detection_probability;
       sensor.visible_fraction = sights_[s][i].visible_fraction;
       if (sensor.detection_probability > 0.0) object.is_hidden = 0;

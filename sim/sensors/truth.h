@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <v2vouch/truth_list_t.hpp>
 #include <vector>
 
 #include "sim/sensors/camera.h"
+#include "sim/sensors/objects.h"
 #include "sim/sensors/radar.h"
 #include "sim/world/world.h"
 
@@ -25,7 +27,9 @@ class TruthWriter {
   std::uint64_t seed_;
   std::vector<RadarSimulator> radars_;
   std::vector<CameraSimulator> cameras_;
-  std::vector<std::vector<Sight>> sights_;  ///< Per sensor, radars first.
+  std::vector<ObjectSimulator> objects_;
+  std::vector<std::string> names_;          ///< Of all sensors, as the next.
+  std::vector<std::vector<Sight>> sights_;  ///< Per sensor: radars, cameras, sources of objects.
 };
 
 }  // namespace v2vouch::sim

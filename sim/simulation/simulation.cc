@@ -12,6 +12,7 @@
 #include "sim/sensors/camera.h"
 #include "sim/sensors/ego.h"
 #include "sim/sensors/message.h"
+#include "sim/sensors/objects.h"
 #include "sim/sensors/radar.h"
 #include "sim/sensors/subject.h"
 #include "sim/sensors/truth.h"
@@ -49,6 +50,11 @@ struct Simulation::State {
     const CameraConfig& config;
     Ticks ticks;
   };
+  struct Objects {
+    ObjectSimulator simulator;
+    const ObjectSensorConfig& config;
+    Ticks ticks;
+  };
   struct Pending {
     SimEvent event;
     std::int64_t stamp_utime = 0;
@@ -78,6 +84,12 @@ struct Simulation::State {
       cameras.push_back({CameraSimulator(w, static_cast<int>(i), s),
                          config,
                          {config.period_s, Phase(i, 0.007, config.period_s)}});
+    }
+    for (std::size_t i = 0; i < w.vehicle().objects.size(); ++i) {
+      const ObjectSensorConfig& config = w.vehicle().objects[i];
+      objects.push_back({ObjectSimulator(w, static_cast<int>(i), s),
+                         config,
+                         {config.period_s, Phase(i, 0.011, config.period_s)}});
     }
     odometry_ticks = {1.0 / scenario.odometry.rate_hz, 0.0};
     gnss_ticks = {1.0 / scenario.gnss.rate_hz, 0.0};
@@ -119,6 +131,7 @@ struct Simulation::State {
 
   void RunRadars(double until_s);
   void RunCameras(double until_s);
+  void RunObjects(double until_s);
   void RunEgo(double until_s);
   void RunTruth(double until_s);
   void RunSenders(double until_s);
@@ -132,6 +145,7 @@ struct Simulation::State {
   double done_s = 0.0;
   std::vector<Radar> radars;
   std::vector<Camera> cameras;
+  std::vector<Objects> objects;
   OdometrySimulator odometry;
   EgoGnssSimulator gnss;
   TruthWriter truth;
@@ -175,6 +189,23 @@ void Simulation::State::RunCameras(double until_s) {
                                      spec.camera_latency_spread_s);
       if (IsFrameLost("camera frame", i, picture.seq)) continue;
       Send(channel, picture.utime, time + latency, picture);
+    }
+  }
+}
+
+void Simulation::State::RunObjects(double until_s) {
+  const SensorsSpec& spec = world.scenario().sensors;
+  object_list_t list{};
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    Objects& source = objects[i];
+    for (; source.ticks.time_s() < until_s; ++source.ticks.next) {
+      const double time = source.ticks.time_s();
+      source.simulator.Detect(world.At(time), source.ticks.next, list);
+      list.utime = Utime(time - source.config.clock_offset_s);
+      const double latency = Latency("objects latency", i, list.seq, spec.objects_latency_s,
+                                     spec.objects_latency_spread_s);
+      if (IsFrameLost("objects frame", i, list.seq)) continue;
+      Send("OBJECTS_" + source.config.name, list.utime, time + latency, list);
     }
   }
 }
@@ -290,6 +321,7 @@ bool Simulation::Step(std::vector<SimEvent>& events) {
   const double until = std::min(duration, state.done_s + kSlice_s);
   state.RunRadars(until);
   state.RunCameras(until);
+  state.RunObjects(until);
   state.RunEgo(until);
   state.RunTruth(until);
   state.RunSenders(until);

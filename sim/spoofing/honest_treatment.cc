@@ -46,7 +46,7 @@ class Views {
       seen.samples = &object.motion.samples();
       std::optional<Timestamp> since;
       for (const TruthSample& sample : object.motion.samples()) {
-        if (!IsSeenByBoth(sample, log.specs)) {
+        if (!IsSeenByEnough(sample, log.specs)) {
           since.reset();
         } else if (!since) {
           since = sample.stamp;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/spoofing/joint_view.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "daemon/common/base/angle.h"
@@ -46,17 +48,18 @@ bool JointView::Sees(Timestamp t, const Eigen::Vector2d& place_W, std::int64_t o
   if (!X_WB_ || !place_W.allFinite()) return false;
   const Eigen::Vector2d p_B = (X_WB_->Inverse() * Point<World>{place_W.x(), place_W.y()}).vector();
   if (p_B.norm() < kNearest_m || p_B.norm() > kFarthest_m) return false;
-  bool by_radar = false, by_camera = false;
+  std::array<bool, kSensorKinds> sees{};
   for (const SensorSpec& sensor : log_.specs.sensors) {
-    if (sensor.is_radar ? by_radar : by_camera) continue;
+    bool& by_kind = sees[static_cast<std::size_t>(sensor.kind)];
+    if (by_kind) continue;
     const Eigen::Vector2d line = p_B - Eigen::Vector2d(sensor.x_m, sensor.y_m);
     const double azimuth = WrapAngle(std::atan2(line.y(), line.x()) - sensor.yaw_rad);
     if (line.norm() > sensor.max_range_m || std::abs(azimuth) > sensor.half_fov_rad) continue;
     const Eigen::Vector2d from_W = (*X_WB_ * Point<Body>{sensor.x_m, sensor.y_m}).vector();
     if (!IsClear(from_W, place_W, own_vehicle)) continue;
-    (sensor.is_radar ? by_radar : by_camera) = true;
+    by_kind = true;
   }
-  return by_radar && by_camera;
+  return std::ranges::count(sees, true) >= log_.specs.KindsThatCheck();
 }
 
 }  // namespace v2vouch::evaluation

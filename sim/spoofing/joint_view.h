@@ -21,8 +21,9 @@ std::vector<TrueBox> TrueBoxes(const Truth& truth, Timestamp t);
 /// Whether the ego's sensors could check a claimed place, by true geometry alone:
 ///
 ///   - 5..100 m from the ego's rear axle,
-///   - within the field of view and range of at least one radar and of at least one camera,
-///   - from each of those two, no true vehicle and no building on the straight line to it.
+///   - within the field of view and range of sensors of two kinds (of the one kind where boxes are
+///     all there is),
+///   - from each of those, no true vehicle and no building on the straight line to it.
 ///
 /// A vehicle whose box the place is in does not stand in its own way; nor does the sender's own
 /// vehicle where the place is within `kOwnBox_m` of it (an honest claim is off by its GNSS error).

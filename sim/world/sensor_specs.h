@@ -18,7 +18,7 @@ enum class SensorMode {
 
 struct SensorsSpec {
   SensorMode mode = SensorMode::kRealistic;
-  double noise_scale = 1.0;       ///< Of every radar and camera sigma.
+  double noise_scale = 1.0;       ///< Of every sigma of radars, cameras and sources of objects.
   double clutter_scale = 1.0;     ///< Of the sensors' own clutter rates.
   double ghost_scale = 1.0;       ///< Of mirror and double-bounce ghosts; 0 = none.
   double detection_scale = 1.0;   ///< Of every detection probability.
@@ -29,6 +29,11 @@ struct SensorsSpec {
   double radar_latency_spread_s = 0.02;
   double camera_latency_s = 0.06;
   double camera_latency_spread_s = 0.06;
+  double objects_latency_s = 0.06;
+  double objects_latency_spread_s = 0.06;
+  bool objects_tell_velocity = false;    ///< Sources of objects tell velocities, ...
+  bool objects_tell_covariance = false;  ///< ... covariances, ...
+  bool objects_tell_ids = false;         ///< ... ids of their own.
 
   template <class Archive>
   void Visit(Archive& a) {
@@ -45,6 +50,12 @@ struct SensorsSpec {
     a.Field("radar_latency_spread_s", radar_latency_spread_s, {.at_least = 0.0, .at_most = 1.0});
     a.Field("camera_latency_s", camera_latency_s, {.at_least = 0.0, .at_most = 1.0});
     a.Field("camera_latency_spread_s", camera_latency_spread_s, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("objects_latency_s", objects_latency_s, {.at_least = 0.0, .at_most = 1.0});
+    a.Field("objects_latency_spread_s", objects_latency_spread_s,
+            {.at_least = 0.0, .at_most = 1.0});
+    a.Field("objects_tell_velocity", objects_tell_velocity);
+    a.Field("objects_tell_covariance", objects_tell_covariance);
+    a.Field("objects_tell_ids", objects_tell_ids);
   }
 };
 
@@ -111,7 +122,7 @@ struct OdometrySpec {
 /// How far one part of the ego car sits from where the `vehicle` section, and so the daemon's
 /// configuration, has it: added to the nominal mounting.
 struct MountingErrorSpec {
-  std::string sensor;  ///< radar_<name>, camera_<name> (in lower case) or antenna.
+  std::string sensor;  ///< radar_<name>, camera_<name>, objects_<name> (lower case) or antenna.
   double x_m = 0.0;
   double y_m = 0.0;
   double z_m = 0.0;  ///< This and the last two: cameras only.

@@ -250,7 +250,7 @@ void BM_VisibilityQuery(benchmark::State& state) {
   map.SetScene(EgoState{}, boxes);
   std::size_t i = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(map.AskRadar(0, boxes[i]));
+    benchmark::DoNotOptimize(map.Ask({SensorKind::kRadar, 0}, boxes[i]));
     i = (i + 1) % boxes.size();
   }
 }

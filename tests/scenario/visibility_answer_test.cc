@@ -146,11 +146,8 @@ class AskedScenario {
     for (const LocalTrack& track : frame.tracks) {
       if (!track.is_confirmed) continue;
       ++listed;
-      const auto is_fresh = [&](const std::optional<Timestamp>& hit) {
-        return hit && ToSeconds(frame.stamp - *hit) <= 0.1;
-      };
       if (track.visibility != Visibility::kVisible && track.start < frame.stamp &&
-          (is_fresh(track.last_radar) || is_fresh(track.last_camera))) {
+          ToSeconds(frame.stamp - track.support.last()) <= 0.1) {
         ++unseen_though_measured;
       }
       const Point<Odometry> p_O{track.state_O.mean[kX], track.state_O.mean[kY]};
@@ -158,11 +155,11 @@ class AskedScenario {
       if (object == nullptr) continue;
       const Occluder footprint = FootprintOf(track);
       for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
-        radars.Add(map.FromRadar(static_cast<int>(i), footprint).view,
+        radars.Add(map.From({SensorKind::kRadar, static_cast<int>(i)}, footprint).view,
                    ProbabilityOf(*object, "RADAR_" + vehicle.radars[i].name));
       }
       for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
-        cameras.Add(map.FromCamera(static_cast<int>(i), footprint).view,
+        cameras.Add(map.From({SensorKind::kCamera, static_cast<int>(i)}, footprint).view,
                     ProbabilityOf(*object, "CAMERA_" + vehicle.cameras[i].name));
       }
     }

@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/data/object_class.h"
 #include "daemon/rim/wire/codec.h"
 #include "daemon/rim/wire/output_encoder.h"
 #include "v2vouch/bsm_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
+#include "v2vouch/object_list_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 
 namespace v2vouch::testing {
@@ -51,6 +53,32 @@ WireMessage Encode(const CameraDetections& boxes, const VehicleConfig& vehicle) 
   const CameraConfig& camera = vehicle.cameras[static_cast<std::size_t>(boxes.camera)];
   WireMessage result{"CAMERA_" + camera.name, {}, boxes.stamp};
   wire::EncodeDetections(boxes, camera, result.bytes);
+  return result;
+}
+
+WireMessage Encode(const ObjectList& list, const VehicleConfig& vehicle) {
+  object_list_t message{};
+  message.utime = ToMicros(list.stamp);
+  message.seq = list.seq;
+  message.sensor = vehicle.objects[static_cast<std::size_t>(list.sensor)].name;
+  for (const ObjectBox& from : list.objects) {
+    object_t to{};
+    to.x_m = from.x_m;
+    to.y_m = from.y_m;
+    to.yaw_rad = from.has_yaw ? from.yaw_rad : kNaN;
+    to.has_front = from.has_front ? 1 : 0;
+    to.length_m = from.has_size ? from.length_m : kNaN;
+    to.width_m = from.has_size ? from.width_m : kNaN;
+    to.velocity_x_mps = from.velocity_mps ? from.velocity_mps->x() : kNaN;
+    to.velocity_y_mps = from.velocity_mps ? from.velocity_mps->y() : kNaN;
+    to.class_name = std::string(ObjectClassName(from.object_class));
+    to.score = from.score;
+    to.id = from.id;
+    message.objects.push_back(to);
+  }
+  message.num_objects = static_cast<std::int32_t>(message.objects.size());
+  WireMessage result{"OBJECTS_" + message.sensor, {}, list.stamp};
+  wire::Encode(message, result.bytes);
   return result;
 }
 

@@ -42,9 +42,18 @@ std::string_view NoticeAdvice(NoticeKind kind);
 
 /// What a notice is about.
 struct NoticeSubject {
-  enum class Kind : std::uint8_t { kCar, kEgoMotion, kGnss, kRadar, kCamera, kV2v, kSender };
+  enum class Kind : std::uint8_t {
+    kCar,
+    kEgoMotion,
+    kGnss,
+    kRadar,
+    kCamera,
+    kObjects,
+    kV2v,
+    kSender
+  };
   Kind kind = Kind::kCar;
-  std::uint32_t index = 0;  ///< Of the radar or camera in the configuration; id of the sender.
+  std::uint32_t index = 0;  ///< Of the sensor in its list of the configuration; id of the sender.
   friend bool operator==(const NoticeSubject&, const NoticeSubject&) = default;
 };
 

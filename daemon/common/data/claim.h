@@ -33,6 +33,7 @@ struct Claim {
   bool accuracy_is_poor = false;  ///< Reported worse than we ever believe: its place is of no use.
   std::optional<double> length_m;
   std::optional<double> width_m;
+  TrackEvents events = 0;
   std::optional<Finding> finding{};  ///< Gravest that the message stream alone has against it.
 };
 
@@ -51,6 +52,7 @@ struct ClaimInOdometry {
   Eigen::Matrix2d alignment = Eigen::Matrix2d::Zero();
   double yaw_sigma_rad = 0.02;
   double speed_sigma_mps = 0.2;
+  TrackEvents events = 0;
 
   /// Over ground [m/s].
   [[nodiscard]] Eigen::Vector2d velocity_O() const {

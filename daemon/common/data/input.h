@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "daemon/common/base/time.h"
+#include "daemon/common/data/sensor.h"
 #include "daemon/common/geodesy/wgs84.h"
 
 namespace v2vouch {
@@ -67,6 +68,32 @@ struct CameraDetections : MessageHeader {
   int image_width_px = 0;
   int image_height_px = 0;
   std::vector<CameraBox> boxes;
+};
+
+/// One object as another perception reports it, in the sensor's own frame: x ahead, y left.
+struct ObjectBox {
+  double x_m = 0.0;  ///< Of the footprint's centre.
+  double y_m = 0.0;
+  double yaw_rad = 0.0;    ///< Of its axis, from the sensor's x axis, left positive.
+  bool has_yaw = true;     ///< False: unknown; yaw_rad says nothing.
+  bool has_front = false;  ///< The end that yaw points to is its front for sure.
+  double length_m = 4.5;
+  double width_m = 1.8;
+  bool has_size = true;                           ///< False: unknown; the sizes say nothing.
+  std::optional<Eigen::Vector2d> velocity_mps{};  ///< As the sensor's configuration says.
+  /// Variances and covariances of x, y [m^2]; diagonal 0: unknown, as configured. Likewise the
+  /// others.
+  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();
+  double yaw_sigma_rad = 0.0;
+  Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();
+  ObjectClass object_class = ObjectClass::kUnknown;
+  double score = 0.0;    ///< 0..1.
+  std::int64_t id = -1;  ///< The sensor's own, of one object over time; -1: none.
+};
+
+struct ObjectList : MessageHeader {
+  int sensor = 0;  ///< Index into VehicleConfig::objects.
+  std::vector<ObjectBox> objects;
 };
 
 enum class Gear : std::int8_t { kNeutral = 0, kPark = 1, kForward = 2, kReverse = 3, kUnknown = 7 };
@@ -143,10 +170,11 @@ struct Bsm : MessageHeader {
   std::optional<double> yaw_rate_radps;  ///< Left positive (J2735's sign turned round).
   std::optional<double> length_m;
   std::optional<double> width_m;
+  TrackEvents events = 0;
   double rssi_dbm = kNaN;
 };
 
-using Input = std::variant<RadarScan, CameraDetections, EgoMotion, GnssFix, Bsm>;
+using Input = std::variant<RadarScan, CameraDetections, ObjectList, EgoMotion, GnssFix, Bsm>;
 
 /// The stamps of any input.
 inline const MessageHeader& HeaderOf(const Input& input) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -79,7 +80,31 @@ struct PoseMeasurement {
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Identity();
 };
 
-using SensorMeasurement = std::variant<RadarMeasurement, CameraMeasurement>;
+/// One vehicle as a detector of boxes sees it (lidar network, smart camera, another fusion), in O.
+/// It knows position, axis and size; where it knows no velocity, that is the tracker's to learn.
+struct BoxMeasurement {
+  double x_m = 0.0;  ///< Of the footprint's centre.
+  double y_m = 0.0;
+  double yaw_rad = 0.0;    ///< Of the axis; front and rear may be confused ...
+  bool has_front = false;  ///< ... unless the detector knows them apart.
+  double length_m = 4.0;
+  double width_m = 1.7;
+  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Identity();  ///< [m^2], in O.
+  double yaw_sigma_rad = 0.15;
+  double length_sigma_m = 0.4;
+  double width_sigma_m = 0.15;
+  std::optional<Eigen::Vector2d> velocity_O_mps{};                    ///< Over ground.
+  Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Identity();  ///< [m^2/s^2], in O.
+  /// What the detector's score says: ln p(score | vehicle) / p(score | clutter); 0: nothing.
+  double log_odds = 0.0;
+  ObjectClass object_class = ObjectClass::kUnknown;
+  double score = 0.0;
+  int sensor = 0;  ///< Index into VehicleConfig::objects.
+  /// Share of the vehicle that this frame could observe; as in RadarMeasurement.
+  double visible_share = 1.0;
+};
+
+using SensorMeasurement = std::variant<RadarMeasurement, CameraMeasurement, BoxMeasurement>;
 
 /// A measurement that a LOCAL track was given, kept so that its PRIORITY filter can use it too.
 struct SensorUpdate {

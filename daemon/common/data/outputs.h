@@ -35,6 +35,7 @@ struct PublishedTrack {
   std::optional<Wgs84> position{};  ///< In geodetic terms, where an alignment exists.
   double bias_east_m = kNaN;
   double bias_north_m = kNaN;
+  TrackEvents events = 0;  ///< PRIORITY only: what the sender says.
 };
 
 struct TrackList {
@@ -49,7 +50,7 @@ struct TrackList {
 };
 
 /// Which input a diagnostic is about.
-enum class InputSource : std::uint8_t { kThis, kEgoMotion, kGnss, kRadar, kCamera, kBsm };
+enum class InputSource : std::uint8_t { kThis, kEgoMotion, kGnss, kRadar, kCamera, kObjects, kBsm };
 
 /// A refused input or a dropped track.
 struct Diagnostic {
@@ -58,7 +59,7 @@ struct Diagnostic {
   std::string_view field;  ///< As in Refusal; points at a literal.
   /// kThis: the input of this step. An earlier one where its refusal came out only now.
   InputSource source = InputSource::kThis;
-  int sensor = 0;  ///< Index of the radar or camera, where `source` is one.
+  int sensor = 0;  ///< Index of the sensor of that kind, where `source` is one.
 };
 
 /// What became of one BSM when it was first heard.

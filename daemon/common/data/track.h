@@ -2,16 +2,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "daemon/common/base/time.h"
 #include "daemon/common/data/ego.h"
 #include "daemon/common/data/input.h"
 #include "daemon/common/data/measurement.h"
+#include "daemon/common/data/sensor.h"
 
 namespace v2vouch {
 
@@ -43,7 +42,7 @@ enum class Visibility : std::int8_t { kVisible = 0, kHidden = 1, kOutOfView = 2 
 
 /// One LOCAL track as the rest of the program sees it.
 struct LocalTrack {
-  std::uint64_t id = 0;  ///< Packed from the detection that started it: time, sensor, index.
+  std::uint64_t id = 0;  ///< TrackId of the detection that started it.
   Timestamp start{};
   KinematicState state_O;
   Extent extent;
@@ -52,19 +51,11 @@ struct LocalTrack {
   double existence = 0.0;     ///< Probability that a vehicle is there.
   bool is_confirmed = false;  ///< Published.
   Visibility visibility = Visibility::kVisible;
-  std::optional<Timestamp> last_radar;
-  std::optional<Timestamp> last_camera;
-  int radar_hits = 0;  ///< Since start.
-  int camera_hits = 0;
+  SensorSupport support;
 
-  /// The latest measurement of it by any sensor; Timestamp{}: none.
-  [[nodiscard]] Timestamp LastHit() const {
-    return std::max(last_radar.value_or(Timestamp{}), last_camera.value_or(Timestamp{}));
-  }
-  /// Whether a sensor measured it at this very time.
-  [[nodiscard]] bool IsHitAt(Timestamp stamp) const {
-    return last_radar == stamp || last_camera == stamp;
-  }
+  [[nodiscard]] int radar_hits() const { return support.hits(SensorKind::kRadar); }
+  [[nodiscard]] int camera_hits() const { return support.hits(SensorKind::kCamera); }
+  [[nodiscard]] int object_hits() const { return support.hits(SensorKind::kObjects); }
   /// The extent that models of what sensors report of it must use.
   [[nodiscard]] Extent ModelExtent() const { return is_point ? Extent{0, 0, 0, 0} : extent; }
 };

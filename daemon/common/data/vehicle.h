@@ -6,6 +6,7 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/base/visit.h"
+#include "daemon/common/data/sensor.h"
 
 namespace v2vouch {
 
@@ -128,8 +129,59 @@ struct CameraConfig {
   }
 };
 
+/// What the velocity of an object is relative to.
+enum class VelocityReference {
+  kGround,  ///< Over ground, along the sensor's axes.
+  kSensor,  ///< Relative to the moving and turning sensor: how x and y change.
+};
+
+/// One source of boxes: a lidar with its detector, a smart camera, another fusion.
+struct ObjectSensorConfig {
+  std::string name = "LIDAR";  ///< Channel is OBJECTS_<NAME>.
+  double x_m = 0.0;            ///< Origin of its frame in B.
+  double y_m = 0.0;
+  double yaw_rad = 0.0;  ///< Of its x axis, left positive.
+  VelocityReference velocity = VelocityReference::kGround;
+  double clock_offset_s = 0.0;
+  double period_s = 0.1;
+  double half_fov_rad = kPi;  ///< Covered azimuth is +- this.
+  double min_range_m = 0.0;
+  double max_range_m = 80.0;
+  double position_sigma_m = 0.3;            ///< Of a box's centre, per axis, where it tells none.
+  double yaw_sigma_rad = FromDegrees(8.0);  ///< Of its axis, likewise.
+  double length_sigma_m = 0.4;              ///< Of its size.
+  double width_sigma_m = 0.15;
+  double velocity_sigma_mps = 0.5;  ///< Of its velocity, per axis, where it tells none.
+  double detection_probability = 0.9;
+  double clutter_per_frame = 0.5;  ///< Expected false boxes.
+  double min_score = 0.3;          ///< Weaker boxes are ignored.
+
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Text("name", name);
+    a.Field("x_m", x_m, {.at_least = -30.0, .at_most = 30.0});
+    a.Field("y_m", y_m, {.at_least = -5.0, .at_most = 5.0});
+    a.Degrees("yaw_deg", yaw_rad, {.at_least = -180.0, .at_most = 180.0});
+    a.Choice("velocity", velocity,
+             {{"ground", VelocityReference::kGround}, {"sensor", VelocityReference::kSensor}});
+    a.Field("clock_offset_s", clock_offset_s, {.at_least = -1.0, .at_most = 1.0});
+    a.Field("period_s", period_s, {.at_least = 0.01, .at_most = 2.0});
+    a.Degrees("half_fov_deg", half_fov_rad, {.above = 0.0, .at_most = 180.0});
+    a.Field("min_range_m", min_range_m, {.at_least = 0.0, .at_most = 20.0});
+    a.Field("max_range_m", max_range_m, {.above = 1.0, .at_most = 500.0});
+    a.Field("position_sigma_m", position_sigma_m, {.above = 0.0, .at_most = 10.0});
+    a.Degrees("yaw_sigma_deg", yaw_sigma_rad, {.above = 0.0, .at_most = 90.0});
+    a.Field("length_sigma_m", length_sigma_m, {.above = 0.0, .at_most = 10.0});
+    a.Field("width_sigma_m", width_sigma_m, {.above = 0.0, .at_most = 5.0});
+    a.Field("velocity_sigma_mps", velocity_sigma_mps, {.above = 0.0, .at_most = 20.0});
+    a.Field("detection_probability", detection_probability, {.above = 0.0, .below = 1.0});
+    a.Field("clutter_per_frame", clutter_per_frame, {.above = 0.0, .at_most = 100.0});
+    a.Field("min_score", min_score, {.at_least = 0.0, .at_most = 1.0});
+  }
+};
+
 /// A sensor's name as calibrations and scenarios spell it behind radar_ or camera_: in lower case.
-std::string SensorKey(std::string name);
+std::string LowerCaseName(std::string name);
 
 /// The car: its body, its sensors, where its GNSS antenna sits, and what its own instruments are
 /// known to be off by. Defaults are the shipped vehicle (daemon/vehicles/vehicle.yaml), which the
@@ -147,6 +199,18 @@ struct VehicleConfig {
   double heading_bias_rad = 0.0;     ///< Of the GNSS receiver's heading: likewise.
   std::vector<RadarConfig> radars = DefaultRadars();
   std::vector<CameraConfig> cameras = {CameraConfig{}};
+  std::vector<ObjectSensorConfig> objects{};
+
+  /// How many sensors of a kind there are.
+  [[nodiscard]] int SensorsOf(SensorKind kind) const;
+  /// All of them: radars, cameras, sources of objects, each in the order of their list.
+  [[nodiscard]] std::vector<SensorKey> AllSensors() const;
+  /// "" for one that is not there.
+  [[nodiscard]] std::string NameOf(SensorKey sensor) const;
+  /// Nominal; 0 for one that is not there, as the next.
+  [[nodiscard]] double PeriodOf(SensorKey sensor) const;
+  /// Of a car in clear view at close range.
+  [[nodiscard]] double DetectionProbabilityOf(SensorKey sensor) const;
 
   /// One long-range radar ahead, two short-range radars at the front corners; the rear is not
   /// watched.
@@ -166,6 +230,7 @@ struct VehicleConfig {
     a.Degrees("heading_bias_deg", heading_bias_rad, {.at_least = -180.0, .at_most = 180.0});
     a.Field("radars", radars);
     a.Field("cameras", cameras);
+    a.Field("objects", objects);
   }
 };
 

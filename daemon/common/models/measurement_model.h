@@ -89,9 +89,24 @@ struct LinearizedPose {
 };
 LinearizedPose LinearizePose(const StateVector& x, const PoseMeasurement& measurement);
 
+/// A box on the ground measured in O.
+///
+///     h(x) = [x, y, yaw (or yaw + pi), vx, vy],   (vx, vy) = speed (cos yaw, sin yaw)
+///
+/// Rows that the box has no figure for, or whose figure cannot belong to this state, are left out:
+/// the axis where it is turned by more than kOddAxis_rad (detectors turn one box in twenty by a
+/// quarter), the velocity where it is unknown.
+Linearized LinearizeBox(const StateVector& x, const BoxMeasurement& measurement);
+inline constexpr double kOddAxis_rad = 0.6;
+
+/// Difference of two axes, in (-pi/2, pi/2].
+double AxisDifference(double a_rad, double b_rad);
+
 /// Why a pose cannot be used: kNotFinite; kOutOfRange where a value lies beyond kMaxPosition_m or
 /// kMaxSpeed_mps, or the covariance is not symmetric and positive definite. nullopt: usable.
 std::optional<Reason> FaultOf(const PoseMeasurement& measurement);
+/// Likewise a box; sizes and standard deviations must be positive, too.
+std::optional<Reason> FaultOf(const BoxMeasurement& box);
 inline constexpr double kMaxPosition_m = 1e6;
 inline constexpr double kMaxSpeed_mps = 150.0;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "daemon/local/camera/camera_preprocessing.h"
+#include "daemon/local/objects/object_preprocessing.h"
 
 namespace v2vouch {
 namespace {
@@ -28,10 +29,8 @@ double RangeFade(double range_m, double max_range_m) {
 }
 
 bool IsJustSeen(const LocalTrack& track, Timestamp now) {
-  const auto is_fresh = [now](const std::optional<Timestamp>& hit) {
-    return hit && ToSeconds(now - *hit) <= kJustSeen_s;
-  };
-  return is_fresh(track.last_radar) || is_fresh(track.last_camera);
+  const Timestamp last = track.support.last();
+  return last != Timestamp{} && ToSeconds(now - last) <= kJustSeen_s;
 }
 
 Visibility VisibilityOf(View overall) {
@@ -47,21 +46,39 @@ Visibility VisibilityOf(View overall) {
   return Visibility::kOutOfView;
 }
 
-double DistanceToSensor(const EgoState& ego, double x_m, double y_m, const LocalTrack& track) {
-  const Point<Odometry> p_OS = ego.X_OB * Point<Body>{x_m, y_m};
-  return std::hypot(track.state_O.mean[kX] - p_OS.x_m, track.state_O.mean[kY] - p_OS.y_m);
+// In clear view, at the track's distance.
+template <class Sensor>
+double FullDetection(const Sensor& sensor, const EgoState& ego, const LocalTrack& track) {
+  const Point<Odometry> p_OS = ego.X_OB * Point<Body>{sensor.x_m, sensor.y_m};
+  const double distance_m =
+      std::hypot(track.state_O.mean[kX] - p_OS.x_m, track.state_O.mean[kY] - p_OS.y_m);
+  return sensor.detection_probability * RangeFade(distance_m, sensor.max_range_m);
+}
+
+double FullDetection(const VehicleConfig& vehicle, SensorKey sensor, const EgoState& ego,
+                     const LocalTrack& track) {
+  const auto index = static_cast<std::size_t>(sensor.index);
+  switch (sensor.kind) {
+    case SensorKind::kRadar:
+      return FullDetection(vehicle.radars[index], ego, track);
+    case SensorKind::kCamera:
+      return FullDetection(vehicle.cameras[index], ego, track);
+    case SensorKind::kObjects:
+      break;
+  }
+  return FullDetection(vehicle.objects[index], ego, track);
 }
 
 }  // namespace
 
 LocalPerception::LocalPerception(const LocalConfig& config)
     : vehicle_(std::make_shared<const VehicleConfig>(config.vehicle)),
+      sensors_(std::make_shared<const std::vector<SensorKey>>(vehicle_->AllSensors())),
       ego_reading_(config.ego_motion),
       radar_preprocessor_(config.radar),
       visibility_(config.visibility, config.vehicle),
       tracker_(config.tracking, config.vehicle),
-      last_radar_(config.vehicle.radars.size()),
-      last_camera_(config.vehicle.cameras.size()) {}
+      last_heard_(sensors_->size()) {}
 
 void LocalPerception::OnEgoMotion(const EgoMotion& sample) {
   const EgoMotion read = ego_reading_.Read(sample);
@@ -85,12 +102,11 @@ std::optional<Reason> LocalPerception::OnRadarScan(const RadarScan& scan,
   tracker_.Predict(scan.stamp);
   Look(*ego);
   tracker_.UpdateRadar(scan.radar, *ego, prepared.measurements, [&](const LocalTrack& track) {
-    return DetectabilityOf(Kind::kRadar, scan.radar, *ego, track);
+    return DetectabilityOf({SensorKind::kRadar, scan.radar}, *ego, track);
   });
   SeeThrough();
   visibility_.AccumulateStatic(scan.stamp, *ego, prepared.measurements);
-  last_radar_[radar] = scan.stamp;
-  Finish(*ego, frame);
+  Finish({SensorKind::kRadar, scan.radar}, *ego, frame);
   return std::nullopt;
 }
 
@@ -102,12 +118,25 @@ std::optional<Reason> LocalPerception::OnCameraDetections(const CameraDetections
   ProcessCamera(detections, vehicle_->cameras[camera], camera_measurements_);
   tracker_.Predict(detections.stamp);
   Look(*ego);
-  tracker_.UpdateCamera(detections.camera, *ego, camera_measurements_,
-                        [&](const LocalTrack& track) {
-                          return DetectabilityOf(Kind::kCamera, detections.camera, *ego, track);
-                        });
-  last_camera_[camera] = detections.stamp;
-  Finish(*ego, frame);
+  const SensorKey sensor{SensorKind::kCamera, detections.camera};
+  tracker_.UpdateCamera(
+      detections.camera, *ego, camera_measurements_,
+      [&](const LocalTrack& track) { return DetectabilityOf(sensor, *ego, track); });
+  Finish(sensor, *ego, frame);
+  return std::nullopt;
+}
+
+std::optional<Reason> LocalPerception::OnObjectList(const ObjectList& list, LocalFrame& frame) {
+  const auto ego = odometry_.StateAt(list.stamp);
+  if (!ego) return Reason::kNoEgoMotion;
+  const SensorKey sensor{SensorKind::kObjects, list.sensor};
+  ProcessObjects(list, *vehicle_, *ego, boxes_);
+  tracker_.Predict(list.stamp);
+  Look(*ego);
+  tracker_.UpdateObjects(list.sensor, *ego, boxes_, [&](const LocalTrack& track) {
+    return DetectabilityOf(sensor, *ego, track);
+  });
+  Finish(sensor, *ego, frame);
   return std::nullopt;
 }
 
@@ -121,30 +150,29 @@ void LocalPerception::Look(const EgoState& ego) {
   visibility_.SetScene(ego, occluders_);
 }
 
-// Multipath ghosts behind a wall must not make it transparent: a camera has seen the vehicle too.
+// Multipath ghosts behind a wall must not make it transparent: a camera or a detector of boxes has
+// seen the vehicle too.
 void LocalPerception::SeeThrough() {
   const auto tracks = tracker_.tracks();
   for (const SensorUpdate& update : tracker_.updates()) {
     const auto* z = std::get_if<RadarMeasurement>(&update.measurement);
     const auto track = std::ranges::lower_bound(tracks, update.track_id, {}, &LocalTrack::id);
     if (z == nullptr || track == tracks.end() || track->id != update.track_id) continue;
-    if (track->is_confirmed && track->camera_hits >= kSureHits) visibility_.SeeThrough(*z);
+    const int whole_hits = track->camera_hits() + track->object_hits();
+    if (track->is_confirmed && whole_hits >= kSureHits) visibility_.SeeThrough(*z);
   }
 }
 
-Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoState& ego,
+Detectability LocalPerception::DetectabilityOf(SensorKey sensor, const EgoState& ego,
                                                const LocalTrack& track) const {
   const Occluder footprint = FootprintOf(track);
-  const bool is_radar = kind == Kind::kRadar;
   Detectability result;
   SensorView seen;
   if (IsJustSeen(track, ego.stamp)) {  // Then the other sensors need not be asked.
     result.visibility = Visibility::kVisible;
-    seen = is_radar ? visibility_.FromRadar(sensor, footprint)
-                    : visibility_.FromCamera(sensor, footprint);
+    seen = visibility_.From(sensor, footprint);
   } else {
-    const VisibilityMap::Answer answer = is_radar ? visibility_.AskRadar(sensor, footprint)
-                                                  : visibility_.AskCamera(sensor, footprint);
+    const VisibilityMap::Answer answer = visibility_.Ask(sensor, footprint);
     seen = answer.sensor;
     result.visibility = VisibilityOf(answer.overall);
   }
@@ -152,18 +180,8 @@ Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoS
   result.visible_share = seen.uncovered;
   result.left_is_covered = seen.left_is_covered;
   result.right_is_covered = seen.right_is_covered;
-  const auto index = static_cast<std::size_t>(sensor);
   if (seen.view == View::kOutOfView) return result;  // With probability 0.
-  double full = 0.0;
-  if (is_radar) {
-    const RadarConfig& radar = vehicle_->radars[index];
-    full = radar.detection_probability *
-           RangeFade(DistanceToSensor(ego, radar.x_m, radar.y_m, track), radar.max_range_m);
-  } else {
-    const CameraConfig& camera = vehicle_->cameras[index];
-    full = camera.detection_probability *
-           RangeFade(DistanceToSensor(ego, camera.x_m, camera.y_m, track), camera.max_range_m);
-  }
+  const double full = FullDetection(*vehicle_, sensor, ego, track);
   switch (seen.view) {
     case View::kClear:
       result.probability = full * seen.uncovered;
@@ -180,35 +198,25 @@ Detectability LocalPerception::DetectabilityOf(Kind kind, int sensor, const EgoS
   return result;
 }
 
-void LocalPerception::Finish(const EgoState& ego, LocalFrame& frame) {
+void LocalPerception::Finish(SensorKey sensor, const EgoState& ego, LocalFrame& frame) {
+  const auto heard = std::ranges::find(*sensors_, sensor) - sensors_->begin();
+  last_heard_[static_cast<std::size_t>(heard)] = ego.stamp;
   newest_ = std::max(newest_, ego.stamp);
   frame.stamp = ego.stamp;
   frame.ego = ego;
   frame.tracks.assign(tracker_.tracks().begin(), tracker_.tracks().end());
   frame.updates.assign(tracker_.updates().begin(), tracker_.updates().end());
-  radar_alive_.clear();
-  camera_alive_.clear();
-  for (std::size_t i = 0; i < last_radar_.size(); ++i) {
-    radar_alive_.push_back(IsRadarAlive(static_cast<int>(i)) ? 1 : 0);
-  }
-  for (std::size_t i = 0; i < last_camera_.size(); ++i) {
-    camera_alive_.push_back(IsCameraAlive(static_cast<int>(i)) ? 1 : 0);
-  }
-  frame.sectors = visibility_.Sectors(radar_alive_, camera_alive_);
+  alive_.clear();
+  for (const SensorKey each : *sensors_) alive_.push_back(IsAlive(each) ? 1 : 0);
+  frame.sectors = visibility_.Sectors(alive_);
 }
 
-bool LocalPerception::IsRadarAlive(int radar) const {
-  const auto index = static_cast<std::size_t>(radar);
-  return last_radar_[index] != Timestamp{} &&
-         newest_ - last_radar_[index] <=
-             FromSeconds(kSilentPeriods * vehicle_->radars[index].period_s);
-}
-
-bool LocalPerception::IsCameraAlive(int camera) const {
-  const auto index = static_cast<std::size_t>(camera);
-  return last_camera_[index] != Timestamp{} &&
-         newest_ - last_camera_[index] <=
-             FromSeconds(kSilentPeriods * vehicle_->cameras[index].period_s);
+bool LocalPerception::IsAlive(SensorKey sensor) const {
+  const auto at = std::ranges::find(*sensors_, sensor);
+  if (at == sensors_->end()) return false;
+  const Timestamp last = last_heard_[static_cast<std::size_t>(at - sensors_->begin())];
+  return last != Timestamp{} &&
+         newest_ - last <= FromSeconds(kSilentPeriods * vehicle_->PeriodOf(sensor));
 }
 
 }  // namespace v2vouch

@@ -25,7 +25,7 @@ struct RadarPreparation {
   std::vector<RadarMeasurement> measurements;
 };
 
-/// LOCAL: what radar, camera and the ego's own motion say, and nothing else. No GNSS and no V2V
+/// LOCAL: what the own sensors and the ego's own motion say, and nothing else. No GNSS and no V2V
 /// type appears in this interface, which is why no such message can change a bit of the list.
 /// Inputs must come in order of time; the timeline restores copies when one is late.
 class LocalPerception {
@@ -39,6 +39,7 @@ class LocalPerception {
   std::optional<Reason> OnRadarScan(const RadarScan& scan, RadarPreparation& prepared,
                                     LocalFrame& frame);
   std::optional<Reason> OnCameraDetections(const CameraDetections& detections, LocalFrame& frame);
+  std::optional<Reason> OnObjectList(const ObjectList& list, LocalFrame& frame);
 
   [[nodiscard]] const EgoOdometry& odometry() const { return odometry_; }
   /// How EGO_MOTION is read: what was learnt and corrected.
@@ -49,30 +50,29 @@ class LocalPerception {
   [[nodiscard]] std::span<const Reason> failures() const { return tracker_.failures(); }
 
   /// Whether a sensor has spoken within three of its periods, by the newest frame's time.
-  [[nodiscard]] bool IsRadarAlive(int radar) const;
-  [[nodiscard]] bool IsCameraAlive(int camera) const;
+  [[nodiscard]] bool IsAlive(SensorKey sensor) const;
 
  private:
-  enum class Kind { kRadar, kCamera };
-
   void Look(const EgoState& ego);
   void SeeThrough();
-  [[nodiscard]] Detectability DetectabilityOf(Kind kind, int sensor, const EgoState& ego,
+  [[nodiscard]] Detectability DetectabilityOf(SensorKey sensor, const EgoState& ego,
                                               const LocalTrack& track) const;
-  void Finish(const EgoState& ego, LocalFrame& frame);
+  void Finish(SensorKey sensor, const EgoState& ego, LocalFrame& frame);
 
   std::shared_ptr<const VehicleConfig> vehicle_;
+  std::shared_ptr<const std::vector<SensorKey>> sensors_;  // AllSensors() of it.
   EgoReading ego_reading_;
   EgoOdometry odometry_;
   RadarPreprocessor radar_preprocessor_;
   VisibilityMap visibility_;
   Tracker tracker_;
   Timestamp newest_{};
-  std::vector<Timestamp> last_radar_, last_camera_;
+  std::vector<Timestamp> last_heard_;  // In the order of `sensors_`.
   // Working memory of one frame.
   Scratch<std::vector<CameraMeasurement>> camera_measurements_;
+  Scratch<std::vector<BoxMeasurement>> boxes_;
   Scratch<std::vector<Occluder>> occluders_;
-  Scratch<std::vector<char>> radar_alive_, camera_alive_;
+  Scratch<std::vector<char>> alive_;
 };
 
 }  // namespace v2vouch

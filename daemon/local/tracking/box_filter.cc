@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/models/kalman.h"
-#include "daemon/local/tracking/box_measurement.h"
+#include "daemon/local/tracking/initial_sigmas.h"
 #include "daemon/local/tracking/track_filter.h"
 
 namespace v2vouch {
@@ -14,28 +13,17 @@ namespace {
 
 // What one box leaves open: anything from standing to motorway speed lies within three sigma.
 constexpr double kInitialSpeedSigma_mps = 10.0;
-constexpr double kInitialYawRateSigma_radps = 0.1;
-constexpr double kInitialAccelSigma_mps2 = 1.5;
-// A reflection lies anywhere on a vehicle: this far from its centre, 1 sigma of each axis.
-constexpr double kReflectionSigma_m = 1.3;
 // Detectors turn one box in twenty by a quarter, or cut it short. Such a value is as likely as
 // clutter's, which spreads over these spans: it must not tear a track from its vehicle.
 constexpr double kOddShare = 0.05;
 constexpr double kAxisSpan_rad = kPi;
 constexpr double kLengthSpan_m = 2.5;
 constexpr double kWidthSpan_m = 0.8;
-// An axis turned by more than this belongs to such a box and teaches nothing.
-constexpr double kOddAxis_rad = 0.6;
+// So do velocities, where a detector tells any: along each axis of O.
+constexpr double kVelocitySpan_mps = 30.0;
 // Motion and detector must both say that the front is the other end.
 constexpr double kBackwards_mps = 1.0;
 constexpr double kBackwardsSigmas = 3.0;
-
-// Difference of two axes, in (-pi/2, pi/2].
-double AxisDifference(double a_rad, double b_rad) {
-  const double d = WrapAngle(a_rad - b_rad);
-  if (d > 0.5 * kPi) return d - kPi;
-  return d <= -0.5 * kPi ? d + kPi : d;
-}
 
 // -2 ln of the density against a clutter value's, which is spread evenly over `span`.
 double Surprise(double difference, double variance, double span) {
@@ -44,27 +32,33 @@ double Surprise(double difference, double variance, double span) {
   return -2.0 * std::log((1.0 - kOddShare) * density * span + kOddShare);
 }
 
-}  // namespace
-
-std::optional<Reason> FaultOf(const BoxMeasurement& z) {
-  for (const double value : {z.x_m, z.y_m, z.yaw_rad, z.length_m, z.width_m, z.yaw_sigma_rad,
-                             z.length_sigma_m, z.width_sigma_m, z.log_odds}) {
-    if (!std::isfinite(value)) return Reason::kNotFinite;
-  }
-  if (!z.position_covariance.allFinite()) return Reason::kNotFinite;
-  if (std::abs(z.x_m) > kMaxPosition_m || std::abs(z.y_m) > kMaxPosition_m) {
-    return Reason::kOutOfRange;
-  }
-  for (const double value :
-       {z.length_m, z.width_m, z.yaw_sigma_rad, z.length_sigma_m, z.width_sigma_m}) {
-    if (value <= 0.0 || value > 100.0) return Reason::kOutOfRange;
-  }
-  const Eigen::Matrix2d& R = z.position_covariance;
-  if (std::abs(R(0, 1) - R(1, 0)) > 1e-9 * (R(0, 0) + R(1, 1))) return Reason::kOutOfRange;
-  const Eigen::LLT<Eigen::Matrix2d> llt(R);
-  if (llt.info() != Eigen::Success) return Reason::kOutOfRange;
-  return std::nullopt;
+// The same for a velocity whose innovation is `y` with covariance `S`.
+double VelocitySurprise(const Eigen::Vector2d& y, const Eigen::Matrix2d& S) {
+  const auto likelihood = LikelihoodOf(y, S);
+  if (!likelihood) return 0.0;
+  const double density =
+      std::exp(-0.5 * (likelihood->distance_squared + likelihood->log_det)) / (2.0 * kPi);
+  return -2.0 *
+         std::log((1.0 - kOddShare) * density * kVelocitySpan_mps * kVelocitySpan_mps + kOddShare);
 }
+
+// A velocity that does not fit the motion at all belongs to another vehicle's box, or to none.
+constexpr double kVelocityGate = 16.0;
+
+// The velocity's rows alone: what position, axis and size say is used before.
+Linearized LinearizeVelocity(const ExtendedState& state, const BoxMeasurement& z) {
+  const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
+  Linearized model;
+  model.y = *z.velocity_O_mps - state.mean[kSpeed] * forward;
+  model.H.setZero(2, kStateSize);
+  model.E.setZero(2, 2);
+  model.H.block<2, 1>(0, kYaw) = state.mean[kSpeed] * Eigen::Vector2d(-forward.y(), forward.x());
+  model.H.block<2, 1>(0, kSpeed) = forward;
+  model.R = z.velocity_covariance;
+  return model;
+}
+
+}  // namespace
 
 void VehicleFilter::StartAt(const BoxMeasurement& z) {
   ExtendedState& state = components_[0].state;
@@ -82,6 +76,14 @@ void VehicleFilter::StartAt(const BoxMeasurement& z) {
   components_[0].weight = 1.0;
   count_ = 1;
   has_driven_ = true;
+  is_size_open_ = true;  // Measured, not a class's.
+  if (!z.velocity_O_mps) return;
+  const Eigen::Vector2d forward(std::cos(z.yaw_rad), std::sin(z.yaw_rad));
+  const double variance = forward.dot(z.velocity_covariance * forward);
+  const double speed_mps = z.velocity_O_mps->dot(forward);
+  AssumeSpeed(speed_mps, std::sqrt(variance));
+  // Motion tells front from rear, where the detector does not.
+  if (!z.has_front && speed_mps < -kBackwardsSigmas * std::sqrt(variance)) FaceAbout(state);
 }
 
 void VehicleFilter::AssumeSpeed(double speed_mps, double sigma_mps) {
@@ -106,6 +108,13 @@ std::optional<Likelihood> VehicleFilter::Evaluate(const BoxMeasurement& z) const
                variance(ExtendedState::kLength, z.length_sigma_m), kLengthSpan_m);
   likelihood->log_det += Surprise(z.width_m - state.mean[ExtendedState::kWidth],
                                   variance(ExtendedState::kWidth, z.width_sigma_m), kWidthSpan_m);
+  if (z.velocity_O_mps) {
+    const Linearized model = LinearizeVelocity(state, z);
+    const Eigen::Matrix<double, 2, kStateSize> H = model.H;
+    likelihood->log_det += VelocitySurprise(
+        model.y, H * state.covariance.topLeftCorner<kStateSize, kStateSize>() * H.transpose() +
+                     z.velocity_covariance);
+  }
   return likelihood;
 }
 
@@ -133,6 +142,13 @@ bool VehicleFilter::Update(const BoxMeasurement& z) {
     model.R(4, 4) = z.yaw_sigma_rad * z.yaw_sigma_rad;
   }
   if (!UpdateExtended(model, state)) return false;
+  if (z.velocity_O_mps) {
+    const Linearized velocity = LinearizeVelocity(state, z);
+    const auto fit = EvaluateExtended(velocity, state);
+    if (fit && fit->distance_squared < kVelocityGate && !UpdateExtended(velocity, state)) {
+      return false;
+    }
+  }
   const double sigma_mps = std::sqrt(std::max(state.covariance(kSpeed, kSpeed), 0.0));
   if (state.mean[kSpeed] < -(kBackwards_mps + kBackwardsSigmas * sigma_mps) &&
       std::cos(z.yaw_rad - state.mean[kYaw]) < 0.0) {
@@ -166,12 +182,13 @@ bool TrackFilter::Update(const BoxMeasurement& z) {
   const double variance = is_vehicle_ ? vehicle_.best().covariance(kSpeed, kSpeed)
                                       : 0.5 * point_.covariance().bottomRightCorner<2, 2>().trace();
   vehicle_.StartAt(z);
+  is_vehicle_ = true;
+  if (z.velocity_O_mps) return true;
   const double sigma_mps = std::sqrt(std::max(variance, 0.0));
   if (sigma_mps < kInitialSpeedSigma_mps) {
     vehicle_.AssumeSpeed(velocity.dot(Eigen::Vector2d(std::cos(z.yaw_rad), std::sin(z.yaw_rad))),
                          sigma_mps);
   }
-  is_vehicle_ = true;
   return true;
 }
 

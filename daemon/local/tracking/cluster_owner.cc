@@ -145,7 +145,7 @@ void Tracker::AbsorbClusters(const RadarLook& look,
 // stands behind: a clearly stronger standing cluster before that, in its silhouette, is its face.
 void Tracker::TakeFaces(const RadarLook& look, std::span<const RadarMeasurement> measurements) {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (assigned_[i] < 0 || tracks_[i].camera_hits == 0 || !hidden_[i].filter.is_vehicle())
+    if (assigned_[i] < 0 || tracks_[i].camera_hits() == 0 || !hidden_[i].filter.is_vehicle())
       continue;
     const RadarMeasurement& given = measurements[static_cast<std::size_t>(assigned_[i])];
     if (!given.is_static || given.outline_count == 0) continue;

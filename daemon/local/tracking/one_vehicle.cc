@@ -27,13 +27,16 @@ constexpr double kFreshReflection_s = 0.1;
 constexpr double kPartSigma_m = 1.5;
 
 // Of two tracks of one vehicle the one that stays: published before not, named by a camera before
-// not, seen more often by cameras (which see the vehicle as a whole), older before younger.
+// not, seen more often by cameras and in boxes (which see the vehicle as a whole), older before
+// younger.
 bool IsSenior(const LocalTrack& a, const LocalTrack& b) {
   if (a.is_confirmed != b.is_confirmed) return a.is_confirmed;
   const bool a_is_named = a.object_class != ObjectClass::kUnknown;
   const bool b_is_named = b.object_class != ObjectClass::kUnknown;
   if (a_is_named != b_is_named) return a_is_named;
-  if (a.camera_hits != b.camera_hits) return a.camera_hits > b.camera_hits;
+  const int a_whole = a.camera_hits() + a.object_hits();
+  const int b_whole = b.camera_hits() + b.object_hits();
+  if (a_whole != b_whole) return a_whole > b_whole;
   return a.id < b.id;
 }
 
@@ -145,7 +148,8 @@ std::optional<double> Tracker::LengthWithPart(std::size_t i, std::size_t j) cons
   if (i == j || hidden_[j].is_dead || !hidden_[j].filter.is_vehicle()) return std::nullopt;
   if (!IsLong(lorry.object_class) || !lorry.is_confirmed || !IsSenior(lorry, part))
     return std::nullopt;
-  if (part.last_camera && part.last_camera == lorry.last_camera) return std::nullopt;
+  if (part.support.SharesFrame(lorry.support, SensorKind::kCamera)) return std::nullopt;
+  if (SeenAsTwo(i, j)) return std::nullopt;
   const Eigen::Rotation2D<double> into(-lorry.state_O.mean[kYaw]);
   // What is seen of it is its last reflection; its centre lies where a car's would.
   if (ToSeconds(now_ - hidden_[i].reflected) > kFreshReflection_s) return std::nullopt;

@@ -41,19 +41,20 @@ void Tracker::NotePlace(std::size_t track, const RadarLook& look, const Eigen::V
 }
 
 bool Tracker::MayBeOwnBody(std::size_t track) const {
-  return !hidden_[track].is_apart && tracks_[track].camera_hits == 0 &&
-         hidden_[track].pose_hits == 0;
+  return !hidden_[track].is_apart && tracks_[track].camera_hits() == 0 &&
+         tracks_[track].object_hits() == 0;
 }
 
 bool Tracker::IsTransparent(std::size_t track) const {
-  return hidden_[track].seen_through >= kSeenThrough && tracks_[track].camera_hits == 0;
+  return hidden_[track].seen_through >= kSeenThrough && tracks_[track].camera_hits() == 0 &&
+         tracks_[track].object_hits() == 0;
 }
 
 // What only radar has seen, and what a camera sees behind it.
 void Tracker::LookThrough(const CameraLook& look, std::span<const CameraMeasurement> measurements) {
   const double axis = look.ego.X_OB.yaw_rad() + look.camera.yaw_rad;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (tracks_[i].camera_hits > 0 || tracks_[i].radar_hits == 0) continue;
+    if (tracks_[i].camera_hits() > 0 || tracks_[i].radar_hits() == 0) continue;
     const Eigen::Vector2d line = hidden_[i].filter.position_O() - look.origin_O();
     const double range_m = std::max(line.norm(), 0.1);
     const double bearing = WrapAngle(std::atan2(line.y(), line.x()) - axis);
@@ -61,7 +62,7 @@ void Tracker::LookThrough(const CameraLook& look, std::span<const CameraMeasurem
     bool is_seen_through = false;
     for (std::size_t k = 0; k < tracks_.size() && !is_seen_through; ++k) {
       if (assigned_[k] < 0 || !tracks_[k].is_confirmed) continue;
-      if (tracks_[k].camera_hits < kSurePictures) continue;
+      if (tracks_[k].camera_hits() < kSurePictures) continue;
       const CameraMeasurement& z = measurements[static_cast<std::size_t>(assigned_[k])];
       if (z.left_is_cut || z.right_is_cut || z.bottom_is_cut) continue;
       const double middle = 0.5 * (z.azimuth_left_rad + z.azimuth_right_rad);

@@ -3,17 +3,10 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/models/kalman.h"
+#include "daemon/local/tracking/initial_sigmas.h"
 #include "daemon/local/tracking/track_filter.h"
 
 namespace v2vouch {
-namespace {
-
-// A pose says nothing about the acceleration; as for a vehicle that radar started.
-constexpr double kInitialAccelSigma_mps2 = 1.5;
-// A reflection lies anywhere on a vehicle: this far from its centre, 1 sigma of each axis.
-constexpr double kReflectionSigma_m = 1.3;
-
-}  // namespace
 
 void VehicleFilter::StartAt(const PoseMeasurement& z, const Extent& size) {
   constexpr int kRows = LinearizedPose::kRows;

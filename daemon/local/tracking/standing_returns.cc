@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <bitset>
 #include <cmath>
 
 #include "daemon/local/tracking/tracker.h"
@@ -15,7 +15,7 @@ constexpr std::size_t kLeastGlances = 5;
 constexpr double kRangeSigmas = 3.0;
 // One place must be this much likelier than any other, as the logarithm of a ratio.
 constexpr double kMargin = 3.0;
-// Returns of a place are counted over so many scans of each of up to eight radars.
+// Returns of a place are counted over so many scans of each radar.
 constexpr int kKeptScans = 4;
 // So many of one scan, the nearest: what stands about in a street, several times over.
 constexpr std::size_t kMostReturns = 256;
@@ -28,7 +28,7 @@ constexpr double kLone = -1.5;
 // Each decibel below the strongest return in sight makes a place less likely: ln of a ratio.
 constexpr double kPerDecibel = 0.3;
 constexpr double kMostWeaker_db = 20.0;
-constexpr std::size_t kRadarSlots = 8;
+constexpr std::size_t kRadarSlots = 32;
 
 // Strength falls with the fourth power of the range.
 double StrengthAtOneMetre(const RadarMeasurement& z) {
@@ -95,14 +95,14 @@ Tracker::Place Tracker::FindPlace(const Glances& glances) {
     const double range_m = seen.range_m;
     // A post gives one return to a scan, a vehicle several.
     int returns = 0;
-    unsigned scans = 0;
+    std::bitset<kMostSensorsOfAKind * kKeptScans> scans;
     for (const InSight& other : in_sight_) {
       const double behind_m = other.range_m - range_m;
       if (other.at->is_moving || behind_m < 0.0 || behind_m > kDepth_m) continue;
       returns += other.at->returns;
-      scans |= 1U << (other.at->radar * kKeptScans + other.at->scans_ago);
+      scans.set(static_cast<std::size_t>(other.at->radar * kKeptScans + other.at->scans_ago));
     }
-    const double per_scan = returns / static_cast<double>(std::max(std::popcount(scans), 1));
+    const double per_scan = returns / static_cast<double>(std::max<std::size_t>(scans.count(), 1));
     const double plenty = std::clamp((per_scan - kPostReturns) / kMoreReturns, 0.0, 1.0);
     const double weaker_db =
         std::min(strongest_db[RadarSlot(at.radar)] - at.strength_db, kMostWeaker_db);

@@ -31,6 +31,9 @@ class TrackFilter {
   static TrackFilter FromPose(const PoseMeasurement& measurement);
   static TrackFilter FromBox(const BoxMeasurement& measurement);
 
+  /// Where the sensor of the next box stands, in O: the near face is the one that it sees.
+  void SeenFrom(const Eigen::Vector2d& origin_O) { seen_from_ = origin_O; }
+
   /// A track that only cameras have seen learns its range from a standing return in its direction.
   void TakeStanding(const Fix& fix);
 

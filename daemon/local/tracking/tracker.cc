@@ -33,8 +33,6 @@ constexpr double kMinDetection = 0.02;
 constexpr double kSureExistence = 0.9999;
 // Standard deviations of the coarse gate; the chi-square gate decides.
 constexpr double kCoarseSigmas = 4.7;
-// Sensor numbers as in PackId.
-constexpr int kFirstCamera = 8;
 // Detection probability of a frame in clear view, and of a picture that should show the vehicle.
 constexpr double kClearLook = 0.4;
 constexpr double kExpectedInPicture = 0.7;
@@ -50,8 +48,6 @@ constexpr double kLeastHold_s = 0.3;
 constexpr double kCoastingSince_s = 0.5;
 // In view, a vehicle is missed for no longer than this.
 constexpr double kOverdue_s = 0.7;
-// More tracks than this are not started by one frame.
-constexpr std::size_t kMostNewcomers = 64;
 constexpr std::size_t kMostBoxes = 128;
 // More that are not listed are not kept: every one of them costs as much as a vehicle.
 constexpr std::size_t kMostGuesses = 128;
@@ -83,10 +79,17 @@ double Cells(const RadarMeasurement&, const RadarLook&) { return 1.0; }
 
 }  // namespace
 
-std::uint64_t Tracker::PackId(Timestamp stamp, int sensor, int index) {
-  return static_cast<std::uint64_t>(ToMicros(stamp)) << 12 |
-         (static_cast<std::uint64_t>(sensor) & 15U) << 8 |
-         (static_cast<std::uint64_t>(index) & 255U);
+std::uint64_t Tracker::PackId(Timestamp stamp, SensorKey sensor, std::size_t index) {
+  constexpr unsigned kDetectionBits = 12;
+  constexpr unsigned kSensorBits = 5;
+  constexpr unsigned kKindBits = 2;
+  constexpr unsigned kUnit_us_bits = 9;
+  static_assert(kMostDetections == std::size_t{1} << kDetectionBits);
+  static_assert(kMostSensorsOfAKind <= 1 << kSensorBits && kSensorKinds <= 1U << kKindBits);
+  const std::uint64_t time = static_cast<std::uint64_t>(ToMicros(stamp)) >> kUnit_us_bits;
+  const std::uint64_t which =
+      static_cast<std::uint64_t>(sensor.kind) << kSensorBits | static_cast<unsigned>(sensor.index);
+  return (time << (kKindBits + kSensorBits) | which) << kDetectionBits | index;
 }
 
 Tracker::Tracker(const TrackerConfig& config, const VehicleConfig& vehicle)
@@ -119,7 +122,7 @@ void Tracker::Predict(Timestamp stamp) {
     // What was seen for a moment only is not waited for.
     const double known_s = ToSeconds(hidden.last_hit - track.start);
     // Boxes alone leave the velocity open.
-    const bool has_velocity = track.radar_hits + hidden.pose_hits > 0;
+    const bool has_velocity = track.radar_hits() + track.object_hits() > 0;
     const double hold_s =
         has_velocity ? std::min(config_.hidden_hold_s, kHoldPerKnown * known_s + kLeastHold_s)
                      : kLeastHold_s;
@@ -145,8 +148,8 @@ bool Tracker::IsOverdue(std::size_t track) const {
          ToSeconds(now_ - hidden_[track].last_hit) > kOverdue_s;
 }
 
-void Tracker::AskDetectability(int sensor, const DetectabilityOf& detectability) {
-  Timestamp& last = last_look_[static_cast<std::size_t>(sensor) % last_look_.size()];
+void Tracker::AskDetectability(SensorKey sensor, const DetectabilityOf& detectability) {
+  Timestamp& last = last_look_[SlotOf(sensor)];
   const double since_s = last == Timestamp{} ? 1e9 : ToSeconds(now_ - last);
   last = now_;
   const double share =
@@ -163,7 +166,7 @@ void Tracker::AskDetectability(int sensor, const DetectabilityOf& detectability)
     missing_[i] =
         tracks_[i].is_confirmed ? 1.0 - std::pow(1.0 - detection_[i], share) : detection_[i];
     // A radar cannot miss what is only guessed to be there.
-    if (sensor < kFirstCamera && !hidden_[i].has_range) missing_[i] = 0.0;
+    if (sensor.kind == SensorKind::kRadar && !hidden_[i].has_range) missing_[i] = 0.0;
     missed_[i] = 1.0 - tracks_[i].existence * missing_[i];
   }
 }
@@ -296,15 +299,16 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
   costs_.clear();
   pairs_.clear();
   PrepareRadar(look, measurements);
-  AskDetectability(radar, detectability);
+  const SensorKey sensor{SensorKind::kRadar, radar};
+  AskDetectability(sensor, detectability);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const double reach_m = kCoarseSigmas * LargestSigma(hidden_[i].filter.position_covariance()) +
                            0.7 * tracks_[i].extent.length_m;
     // Long enough tried, a guess may meet standing returns by itself.
     const bool is_guess = !hidden_[i].has_range;
     if (is_guess && hidden_[i].glances.size() < Glances::kMost) continue;
-    const bool takes_standing =
-        tracks_[i].camera_hits > 0 || hidden_[i].moving_hits >= config_.confirm_hits;
+    const bool takes_standing = tracks_[i].camera_hits() + tracks_[i].object_hits() > 0 ||
+                                hidden_[i].moving_hits >= config_.confirm_hits;
     candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m, [&](std::size_t j) {
       if (measurements[j].is_static ? takes_standing : !is_guess) {
         GatePair(i, j, look, measurements[j]);
@@ -324,7 +328,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
       hidden_[i].is_dead = true;
       continue;
     }
-    Hit(i);
+    Hit(i, sensor);
     // A post in the vehicle's place would have been seen as well.
     Hidden& hidden = hidden_[i];
     if (z.is_static) {
@@ -337,8 +341,6 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
     hidden.reflection_O = candidates_[static_cast<std::size_t>(assigned_[i])].p_O;
     hidden.reflected = now_;
     NotePlace(i, look, hidden.reflection_O);
-    tracks_[i].last_radar = now_;
-    ++tracks_[i].radar_hits;
     hidden.has_range = true;
     if (!z.is_static) ++hidden_[i].moving_hits;
     updates_.push_back({tracks_[i].id, z});
@@ -379,12 +381,11 @@ void Tracker::StartFromRadar(const RadarLook& look, int radar,
       is_taken = Owns(i, look, measurements[j], candidates_[j].p_O);
     }
     if (is_taken) continue;
-    if (!Start(TrackFilter::FromRadar(look, measurements[j], settings_), radar, j,
+    const SensorKey sensor{SensorKind::kRadar, radar};
+    if (!Start(TrackFilter::FromRadar(look, measurements[j], settings_), sensor, j,
                candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]))) {
       continue;
     }
-    tracks_.back().last_radar = now_;
-    tracks_.back().radar_hits = 1;
     hidden_.back().moving_hits = 1;
     hidden_.back().reflection_O = candidates_[j].p_O;
     hidden_.back().reflected = now_;
@@ -446,7 +447,8 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
   costs_.clear();
   pairs_.clear();
   PrepareCamera(look, measurements);
-  AskDetectability(camera + kFirstCamera, detectability);
+  const SensorKey sensor{SensorKind::kCamera, camera};
+  AskDetectability(sensor, detectability);
   const double axis = ego.X_OB.yaw_rad() + look.camera.yaw_rad;
   const Eigen::Vector2d origin_O = look.origin_O();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -481,17 +483,15 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
     }
     const CameraMeasurement z = Given(i, measurements[static_cast<std::size_t>(assigned_[i])]);
     candidates_[static_cast<std::size_t>(assigned_[i])].may_start = false;
-    Vote(i, z);
+    Vote(i, z.object_class, z.score);
     if (!hidden_[i].filter.Update(look, z, settings_)) {
       failures_.push_back(Reason::kTrackNumerics);
       hidden_[i].is_dead = true;
       continue;
     }
-    Hit(i);
+    Hit(i, sensor);
     hidden_[i].is_far =
         (hidden_[i].filter.position_O() - origin_O).norm() > config_.camera_birth_range_m;
-    tracks_[i].last_camera = now_;
-    ++tracks_[i].camera_hits;
     updates_.push_back({tracks_[i].id, z});
     if (!hidden_[i].has_range) LearnRange(i, look, z);
   }
@@ -519,47 +519,49 @@ void Tracker::StartFromCamera(const CameraLook& look, int camera,
       is_covered = assigned_[i] < 0 && Covers(i, look, z, *fix);
     }
     if (is_covered) continue;
-    if (!Start(TrackFilter::FromCamera(look, z, *fix), camera + kFirstCamera, j,
+    if (!Start(TrackFilter::FromCamera(look, z, *fix), {SensorKind::kCamera, camera}, j,
                candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]))) {
       continue;
     }
     ++started;
-    Vote(tracks_.size() - 1, z);
-    tracks_.back().last_camera = now_;
-    tracks_.back().camera_hits = 1;
+    Vote(tracks_.size() - 1, z.object_class, z.score);
     hidden_.back().has_range = settings_.point_targets;
     updates_.push_back({tracks_.back().id, z});
   }
 }
 
-void Tracker::Hit(std::size_t track) { hidden_[track].last_hit = now_; }
+void Tracker::Hit(std::size_t track, SensorKey sensor) {
+  hidden_[track].last_hit = now_;
+  tracks_[track].support.Add(sensor, now_);
+}
 
-void Tracker::Vote(std::size_t track, const CameraMeasurement& z) {
-  const auto named = static_cast<std::size_t>(z.object_class);
+void Tracker::Vote(std::size_t track, ObjectClass object_class, double score) {
+  const auto named = static_cast<std::size_t>(object_class);
   Hidden& hidden = hidden_[track];
   if (named == 0 || named >= hidden.class_votes.size()) return;
   for (double& votes : hidden.class_votes) votes *= kVoteMemory;
-  hidden.class_votes[named] += std::max(z.score, 0.05);
+  hidden.class_votes[named] += std::max(score, 0.05);
   const auto current = static_cast<std::size_t>(tracks_[track].object_class);
   // A name changes only for one that is clearly better supported.
   if (named != current && hidden.class_votes[named] > 1.5 * hidden.class_votes[current]) {
-    tracks_[track].object_class = z.object_class;
-    hidden.filter.SetClass(z.object_class);
+    tracks_[track].object_class = object_class;
+    hidden.filter.SetClass(object_class);
   }
 }
 
-bool Tracker::Start(const TrackFilter& filter, int sensor, std::size_t index, double existence) {
-  // An index beyond what an id can hold starts nothing: no scan has 256 vehicles.
-  if (index > 255) return false;
-  std::uint64_t id = PackId(now_, sensor, static_cast<int>(index));
-  // Two messages of one sensor may bear one stamp.
-  while (std::ranges::any_of(tracks_, [id](const LocalTrack& other) { return other.id == id; })) {
-    ++id;
-  }
-  return StartAs(id, filter, existence);
-}
-
-bool Tracker::StartAs(std::uint64_t id, const TrackFilter& filter, double existence) {
+bool Tracker::Start(const TrackFilter& filter, SensorKey sensor, std::size_t index,
+                    double existence) {
+  if (index >= kMostDetections) return false;
+  std::uint64_t id = PackId(now_, sensor, index);
+  // Two messages of one sensor may bear one stamp. Tracks of other times come first in the table.
+  const std::uint64_t first = PackId(now_, {}, 0);
+  const auto is_taken = [&] {
+    for (auto other = tracks_.rbegin(); other != tracks_.rend() && other->id >= first; ++other) {
+      if (other->id == id) return true;
+    }
+    return false;
+  };
+  while (is_taken()) ++id;
   if (tracks_.size() >= static_cast<std::size_t>(config_.max_tracks)) {
     failures_.push_back(Reason::kTrackTableFull);
     return false;
@@ -576,6 +578,7 @@ bool Tracker::StartAs(std::uint64_t id, const TrackFilter& filter, double existe
   hidden.last_hit = now_;
   tracks_.push_back(track);
   hidden_.push_back(hidden);
+  Hit(tracks_.size() - 1, sensor);
   return true;
 }
 
@@ -616,12 +619,11 @@ void Tracker::Conclude(double dt_s) {
   }
 }
 
-// Of many tracks that are not listed the likeliest stay. Whole poses come from a sensor that has
-// made up its mind: they are not counted.
+// Of many tracks that are not listed the likeliest stay.
 void Tracker::DropUnlikely() {
   newcomers_.clear();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    const bool may_go = !tracks_[i].is_confirmed && hidden_[i].pose_hits == 0;
+    const bool may_go = !tracks_[i].is_confirmed && !hidden_[i].is_certain;
     if (may_go && !hidden_[i].is_dead) newcomers_.push_back(static_cast<int>(i));
   }
   if (newcomers_.size() <= kMostGuesses) return;
@@ -637,7 +639,8 @@ void Tracker::DropUnlikely() {
 
 void Tracker::ForgetUnpicturedSince(Timestamp since) {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (tracks_[i].start >= since && tracks_[i].camera_hits == 0) hidden_[i].is_dead = true;
+    if (tracks_[i].start < since) continue;
+    if (tracks_[i].camera_hits() + tracks_[i].object_hits() == 0) hidden_[i].is_dead = true;
   }
   RemoveDead();
   std::erase_if(recent_, [](const RecentReturn& at) { return at.is_moving; });

@@ -75,7 +75,7 @@ struct Detectability {
 };
 using DetectabilityOf = std::function<Detectability(const LocalTrack&)>;
 
-/// What a sensor of whole poses (PoseMeasurement) is like.
+/// What a sensor of whole poses (PoseMeasurement) is like: a simulation's or a bench's.
 struct PoseSensor {
   double period_s = 0.1;
   /// False poses per frame and square metre, their speeds, directions and yaw rates spread evenly
@@ -86,7 +86,7 @@ struct PoseSensor {
   double yaw_rate_span_radps = 0.5;
 };
 
-/// What a sensor of boxes (BoxMeasurement) is like.
+/// What a sensor of boxes (BoxMeasurement) is like: a bench's.
 struct BoxSensor {
   double period_s = 0.1;
   double clutter_per_m2 = 1e-4;  ///< False boxes per frame and square metre, whatever their score.
@@ -130,6 +130,9 @@ struct PoseUpdate {
 ///   unless one picture has shown both: the other is lengthened.
 class Tracker {
  public:
+  /// More tracks than this are not started by one frame.
+  static constexpr std::size_t kMostNewcomers = 64;
+
   Tracker(const TrackerConfig& config, const VehicleConfig& vehicle);
 
   /// Brings every track to `stamp` (>= the last one) and drops those that have ended: hidden for
@@ -145,6 +148,12 @@ class Tracker {
   void UpdateCamera(int camera, const EgoState& ego,
                     std::span<const CameraMeasurement> measurements,
                     const DetectabilityOf& detectability);
+
+  /// One frame of a configured source of objects, in O: boxes update tracks, start and confirm
+  /// them, and their absence where the source could have seen a vehicle speaks against it. Refused
+  /// boxes (FaultOf) and a crowd that is none of vehicles stand in failures().
+  void UpdateObjects(int source, const EgoState& ego, std::span<const BoxMeasurement> boxes,
+                     const DetectabilityOf& detectability);
 
   /// One frame of poses, in O. The likelihood of clutter covers position, speed, yaw and yaw rate;
   /// any pose that no track explains starts one. Poses that FaultOf refuses are skipped, and stand
@@ -169,11 +178,10 @@ class Tracker {
   /// Numerical failures, overflow and refused poses since the last Predict.
   [[nodiscard]] std::span<const Reason> failures() const { return failures_; }
 
-  /// Identity of a track: time, sensor (radars 0-7, cameras 8-15) and index of what started it.
-  static std::uint64_t PackId(Timestamp stamp, int sensor, int index);
-  /// The same for a pose, whose index may reach 4095: the time is cut to 16 us to make room, the
-  /// sensor is 15 (a car's eighth camera).
-  static std::uint64_t PackPoseId(Timestamp stamp, int index);
+  /// Identity of a track, positive in 63 bits and in the order of time: time in units of 512 us,
+  /// kind of sensor (2 bits), its index (5) and the index of the detection that started it (12).
+  static std::uint64_t PackId(Timestamp stamp, SensorKey sensor, std::size_t index);
+  static constexpr std::size_t kMostDetections = 4096;  ///< Of one frame, as an id can hold them.
 
  private:
   struct Hidden {  // What the rest of the program need not see of a track.
@@ -182,14 +190,13 @@ class Tracker {
     double proven = 0.0;  // Existence by pictures and motion alone.
     Eigen::Vector2d reflection_O = Eigen::Vector2d::Zero();  // Last cluster it was given,
     Timestamp reflected{};                                   // and when.
-    int borrowed = 0;      // Clusters out of an older vehicle's box, own ones taken off twice.
-    int clear_hits = 0;    // Radar clusters from where the radar can see.
-    int not_pictured = 0;  // Pictures that ought to have shown it.
-    int moving_hits = 0;   // Radar clusters with a Doppler of their own.
-    int pose_hits = 0;     // Boxes too.
-    Timestamp last_pose{};
-    double overlap_s = 0.0;  // How long an older track has been in the same place.
-    double part_s = 0.0;     // How long it could be the far end of a lorry or bus.
+    int borrowed = 0;         // Clusters out of an older vehicle's box, own ones taken off twice.
+    int clear_hits = 0;       // Radar clusters from where the radar can see.
+    int not_pictured = 0;     // Pictures that ought to have shown it.
+    int moving_hits = 0;      // Radar clusters with a Doppler of their own.
+    bool is_certain = false;  // Started by a bench's pose or box: however unlikely, it may stay.
+    double overlap_s = 0.0;   // How long an older track has been in the same place.
+    double part_s = 0.0;      // How long it could be the far end of a lorry or bus.
     std::array<double, 8> class_votes{};
     Glances glances;        // While its range is a camera's guess,
     bool has_range = true;  // which it no longer is.
@@ -217,18 +224,35 @@ class Tracker {
   void GatePair(std::size_t track, std::size_t measurement, const Look& look, const Measurement& z);
   void AddPair(std::size_t track, std::size_t measurement, const Likelihood& likelihood,
                double log_cells);
+  /// What a frame of boxes or poses is measured by.
+  struct WholeFrame {
+    SensorKey sensor;
+    std::optional<Eigen::Vector2d> origin_O{};  // Of a configured sensor.
+    double log_point_cells = 0.0;               // AddPair's, for tracks that are points.
+    std::size_t most_newcomers = kMostDetections;
+    bool is_bench = true;
+  };
   void PrepareBoxes(const BoxSensor& sensor, std::span<const BoxMeasurement> boxes);
   void PreparePoses(const PoseSensor& sensor, std::span<const PoseMeasurement> poses);
+  /// The frame once its candidates are prepared: associate, update, start.
+  template <class Measurement>
+  void UpdateWhole(const WholeFrame& frame, std::span<const Measurement> measurements,
+                   const DetectabilityOf& detectability);
+  template <class Measurement>
+  void TakeWhole(const WholeFrame& frame, std::size_t track, const Measurement& raw);
+  template <class Measurement>
+  void StartWhole(const WholeFrame& frame, std::span<const Measurement> measurements);
   [[nodiscard]] double Crowd(std::size_t detections) const;
   void PrepareRadar(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void PrepareCamera(const CameraLook& look, std::span<const CameraMeasurement> measurements);
-  void AskDetectability(int sensor, const DetectabilityOf& detectability);
+  void AskDetectability(SensorKey sensor, const DetectabilityOf& detectability);
   [[nodiscard]] bool IsWorthListing(std::size_t track) const;
   [[nodiscard]] bool IsOverdue(std::size_t track) const;
   /// The measurement as one of this track, with what visibility knows about its edges.
   [[nodiscard]] RadarMeasurement Given(std::size_t track, const RadarMeasurement& z) const;
   [[nodiscard]] CameraMeasurement Given(std::size_t track, const CameraMeasurement& z) const;
+  [[nodiscard]] BoxMeasurement Given(std::size_t track, const BoxMeasurement& z) const;
   void Associate(std::size_t measurements);
   void TakeFaces(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void AbsorbClusters(const RadarLook& look, std::span<const RadarMeasurement> measurements);
@@ -248,11 +272,10 @@ class Tracker {
   };
   [[nodiscard]] Place FindPlace(const Glances& glances);
   void LearnRange(std::size_t track, const CameraLook& look, const CameraMeasurement& z);
-  void Hit(std::size_t track);
-  void Vote(std::size_t track, const CameraMeasurement& z);
-  /// Both: false when the table is full.
-  bool Start(const TrackFilter& filter, int sensor, std::size_t index, double existence);
-  bool StartAs(std::uint64_t id, const TrackFilter& filter, double existence);
+  void Hit(std::size_t track, SensorKey sensor);
+  void Vote(std::size_t track, ObjectClass object_class, double score);
+  /// False when the table is full.
+  bool Start(const TrackFilter& filter, SensorKey sensor, std::size_t index, double existence);
   void JoinOwned(std::span<const RadarMeasurement> measurements);
   void DropDuplicates(double dt_s);
   [[nodiscard]] bool IsWithin(std::size_t i, std::size_t j) const;
@@ -280,7 +303,7 @@ class Tracker {
   std::array<double, Linearized::kMaxRows + 1> gate_{};
   Timestamp now_{};
   double since_update_s_ = 0.0;
-  std::array<Timestamp, 16> last_look_{};  // By sensor as in PackId.
+  std::array<Timestamp, kSensorSlots> last_look_{};  // By SlotOf.
   std::vector<LocalTrack> tracks_;
   std::vector<Hidden> hidden_;
   std::vector<RecentReturn> recent_;  // Of each radar's last scans.

@@ -3,19 +3,26 @@
 #include <cmath>
 #include <limits>
 
-#include "daemon/local/tracking/box_measurement.h"
-#include "daemon/local/tracking/tracker.h"
+#include "daemon/local/tracking/tracker_whole.h"
 
 namespace v2vouch {
 namespace {
 
-constexpr int kBoxSensor = 15;  // As poses.
-constexpr std::size_t kMostFrameBoxes = 4096;
+// What a detector draws of a vehicle that it sees half of: its centre is off by up to so much.
+constexpr double kUnseenSigma_m = 1.0;
 
 }  // namespace
 
+BoxMeasurement Tracker::Given(std::size_t track, const BoxMeasurement& z) const {
+  BoxMeasurement given = z;
+  given.visible_share = seen_[track].visible_share;
+  const double unseen_m = kUnseenSigma_m * (1.0 - std::clamp(given.visible_share, 0.0, 1.0));
+  given.position_covariance += unseen_m * unseen_m * Eigen::Matrix2d::Identity();
+  return given;
+}
+
 void Tracker::PrepareBoxes(const BoxSensor& sensor, std::span<const BoxMeasurement> boxes) {
-  const double sigmas = std::sqrt(gate_[2]);
+  const double sigmas = std::sqrt(gate_[WholeTraits<BoxMeasurement>::kGateRows]);
   candidates_.Clear();
   for (const BoxMeasurement& z : boxes) {
     Candidate candidate;
@@ -39,52 +46,24 @@ void Tracker::PrepareBoxes(const BoxSensor& sensor, std::span<const BoxMeasureme
 
 void Tracker::UpdateBoxes(const BoxSensor& sensor, std::span<const BoxMeasurement> boxes,
                           const DetectabilityOf& detectability) {
-  boxes = boxes.first(std::min(boxes.size(), kMostFrameBoxes));
-  updates_.clear();
-  pose_updates_.clear();
-  costs_.clear();
-  pairs_.clear();
+  boxes = boxes.first(std::min(boxes.size(), kMostDetections));
   PrepareBoxes(sensor, boxes);
-  AskDetectability(kBoxSensor, detectability);
-  const double sigmas = std::sqrt(gate_[2]);
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    const TrackFilter& filter = hidden_[i].filter;
-    double reach_m = sigmas * LargestSigma(filter.position_covariance());
-    // A point is a reflection somewhere on a vehicle.
-    if (!filter.is_vehicle()) reach_m += tracks_[i].extent.length_m;
-    candidates_.ForEachNear(filter.position_O(), reach_m, [&](std::size_t j) {
-      if (!candidates_[j].may_start) return;
-      if (const auto likelihood = filter.Evaluate(boxes[j], settings_)) {
-        AddPair(i, j, *likelihood, 0.0);
-      }
-    });
-  }
-  Associate(boxes.size());
+  UpdateWhole({.sensor = {SensorKind::kObjects, 0}}, boxes, detectability);
+}
 
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (assigned_[i] < 0) continue;
-    const auto j = static_cast<std::size_t>(assigned_[i]);
-    candidates_[j].may_start = false;
-    if (!hidden_[i].filter.Update(boxes[j])) {
-      failures_.push_back(Reason::kTrackNumerics);
-      hidden_[i].is_dead = true;
-      continue;
-    }
-    Hit(i);
-    ++hidden_[i].pose_hits;
-    hidden_[i].last_pose = now_;
-    pose_updates_.push_back({tracks_[i].id, j});
-  }
-  for (std::size_t j = 0; j < boxes.size(); ++j) {
-    if (!candidates_[j].may_start) continue;
-    const std::uint64_t id = PackPoseId(now_, static_cast<int>(j));
-    const double existence = candidates_[j].birth_existence * (1.0 - marginals_.explained()[j]);
-    if (!StartAs(id, TrackFilter::FromBox(boxes[j]), existence)) continue;
-    hidden_.back().pose_hits = 1;
-    hidden_.back().last_pose = now_;
-    pose_updates_.push_back({id, j});
-  }
-  Conclude(since_update_s_);
+void Tracker::UpdateObjects(int source, const EgoState& ego, std::span<const BoxMeasurement> boxes,
+                            const DetectabilityOf& detectability) {
+  const ObjectSensorConfig& config = vehicle_->objects[static_cast<std::size_t>(source)];
+  boxes = boxes.first(std::min(boxes.size(), kMostDetections));
+  const double area_m2 = config.half_fov_rad * (config.max_range_m * config.max_range_m -
+                                                config.min_range_m * config.min_range_m);
+  const double clutter = std::max(config.clutter_per_frame, Crowd(boxes.size()));
+  PrepareBoxes({config.period_s, clutter / std::max(area_m2, 1.0)}, boxes);
+  UpdateWhole({.sensor = {SensorKind::kObjects, source},
+               .origin_O = (ego.X_OB * Point<Body>{config.x_m, config.y_m}).vector(),
+               .most_newcomers = kMostNewcomers,
+               .is_bench = false},
+              boxes, detectability);
 }
 
 }  // namespace v2vouch

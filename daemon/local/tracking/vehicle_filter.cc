@@ -9,12 +9,11 @@
 #include "daemon/common/base/angle.h"
 #include "daemon/common/models/kalman.h"
 #include "daemon/common/models/radar_outline.h"
+#include "daemon/local/tracking/initial_sigmas.h"
 
 namespace v2vouch {
 namespace {
 
-constexpr double kInitialYawRateSigma_radps = 0.1;
-constexpr double kInitialAccelSigma_mps2 = 1.5;
 // The spread of a cluster speaks about the size only where it is not absurd.
 constexpr double kSpanGate = 9.0;
 // Beyond this squared distance a reflection beside the silhouette counts ever less.

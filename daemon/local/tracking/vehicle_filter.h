@@ -14,8 +14,6 @@
 
 namespace v2vouch {
 
-struct BoxMeasurement;
-
 /// What the filter has to know beside the measurement.
 struct FilterSettings {
   MotionNoise motion;

@@ -21,25 +21,38 @@ constexpr double kBinsPath_m = 0.3;
 }  // namespace
 
 VisibilityMap::VisibilityMap(const VisibilityConfig& config, const VehicleConfig& vehicle)
-    : config_(config),
-      radar_count_(vehicle.radars.size()),
-      raster_(config.static_cell_m, config.static_hold_s, config.static_min_hits) {
+    : config_(config), raster_(config.static_cell_m, config.static_hold_s, config.static_min_hits) {
   for (const RadarConfig& radar : vehicle.radars) {
-    AddSensor({.p_B = {radar.x_m, radar.y_m},
+    AddSensor({.kind = SensorKind::kRadar,
+               .p_B = {radar.x_m, radar.y_m},
                .yaw_rad = radar.yaw_rad,
                .fov_left_rad = radar.half_fov_rad,
                .fov_right_rad = radar.half_fov_rad,
                .min_range_m = radar.min_range_m,
                .max_range_m = radar.max_range_m});
   }
+  first_[1] = sensors_.size();
   for (const CameraConfig& camera : vehicle.cameras) {
-    AddSensor({.p_B = {camera.x_m, camera.y_m},
+    AddSensor({.kind = SensorKind::kCamera,
+               .p_B = {camera.x_m, camera.y_m},
                .yaw_rad = camera.yaw_rad,
                .fov_left_rad = std::atan2(camera.cx_px, camera.fx_px),
                .fov_right_rad = std::atan2(camera.image_width_px - camera.cx_px, camera.fx_px),
                .min_range_m = 0.0,
                .max_range_m = camera.max_range_m});
   }
+  first_[2] = sensors_.size();
+  for (const ObjectSensorConfig& source : vehicle.objects) {
+    AddSensor({.kind = SensorKind::kObjects,
+               .p_B = {source.x_m, source.y_m},
+               .yaw_rad = source.yaw_rad,
+               .fov_left_rad = source.half_fov_rad,
+               .fov_right_rad = source.half_fov_rad,
+               .min_range_m = source.min_range_m,
+               .max_range_m = source.max_range_m});
+  }
+  first_[3] = sensors_.size();
+  static_assert(kSensorKinds == 3);
 }
 
 void VisibilityMap::AddSensor(const Sensor& sensor) {
@@ -83,8 +96,8 @@ void VisibilityMap::AccumulateStatic(Timestamp stamp, const EgoState& ego,
                                      std::span<const RadarMeasurement> measurements) {
   const Eigen::Matrix2d R_OB = ego.X_OB.rotation();
   for (const RadarMeasurement& m : measurements) {
-    if (!m.is_static || m.radar < 0 || static_cast<std::size_t>(m.radar) >= radar_count_) continue;
-    const Sensor& sensor = sensors_[static_cast<std::size_t>(m.radar)];
+    if (!m.is_static || m.radar < 0 || static_cast<std::size_t>(m.radar) >= first_[1]) continue;
+    const Sensor& sensor = At({SensorKind::kRadar, m.radar});
     const auto add = [&](double azimuth_rad) {
       const double bearing_B = sensor.yaw_rad + azimuth_rad;
       const double x_m = sensor.p_B.x() + m.range_m * std::cos(bearing_B);
@@ -112,7 +125,7 @@ void VisibilityMap::AccumulateStatic(Timestamp stamp, const EgoState& ego,
 }
 
 void VisibilityMap::SeeThrough(const RadarMeasurement& measurement) {
-  const Sensor& sensor = RadarAt(measurement.radar);
+  const Sensor& sensor = At({SensorKind::kRadar, measurement.radar});
   const double bearing_O = ego_.X_OB.yaw_rad() + sensor.yaw_rad + measurement.azimuth_rad;
   const double reach_m = measurement.near_range_m - config_.margin_m - 2.0 * config_.static_cell_m;
   // The bins know whether there is anything to clear away.
@@ -163,14 +176,11 @@ void VisibilityMap::RebuildBins(Viewpoint& viewpoint) const {
   });
 }
 
-const VisibilityMap::Sensor& VisibilityMap::RadarAt(int index) const {
-  V2VOUCH_CHECK(index >= 0 && static_cast<std::size_t>(index) < radar_count_);
-  return sensors_[static_cast<std::size_t>(index)];
-}
-
-const VisibilityMap::Sensor& VisibilityMap::CameraAt(int index) const {
-  V2VOUCH_CHECK(index >= 0 && radar_count_ + static_cast<std::size_t>(index) < sensors_.size());
-  return sensors_[radar_count_ + static_cast<std::size_t>(index)];
+const VisibilityMap::Sensor& VisibilityMap::At(SensorKey sensor) const {
+  const auto kind = static_cast<std::size_t>(sensor.kind);
+  const std::size_t at = first_[kind] + static_cast<std::size_t>(sensor.index);
+  V2VOUCH_CHECK(sensor.index >= 0 && at < first_[kind + 1]);
+  return sensors_[at];
 }
 
 bool VisibilityMap::HasStandingReturn(const Eigen::Vector2d& p_O, double within_m) const {

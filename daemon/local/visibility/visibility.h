@@ -81,10 +81,9 @@ class VisibilityMap {
   /// Sets the scene for queries: where the ego is, and the tracked boxes.
   void SetScene(const EgoState& ego, std::span<const Occluder> occluders);
 
-  /// How radar `index` / camera `index` sees a footprint (centre, yaw, extent) whose position is
-  /// uncertain by `position_sigma_m`; `id` is the track whose own box must not count.
-  [[nodiscard]] SensorView FromRadar(int index, const Occluder& footprint) const;
-  [[nodiscard]] SensorView FromCamera(int index, const Occluder& footprint) const;
+  /// How one sensor sees a footprint (centre, yaw, extent) whose position is uncertain by
+  /// `position_sigma_m`; `id` is the track whose own box must not count.
+  [[nodiscard]] SensorView From(SensorKey sensor, const Occluder& footprint) const;
 
   /// Whether a radar has lately measured something stationary within `within_m` of a position.
   /// Returns in the box of a track do not count.
@@ -99,20 +98,20 @@ class VisibilityMap {
     SensorView sensor;
     View overall = View::kOutOfView;
   };
-  [[nodiscard]] Answer AskRadar(int index, const Occluder& footprint) const;
-  [[nodiscard]] Answer AskCamera(int index, const Occluder& footprint) const;
+  [[nodiscard]] Answer Ask(SensorKey sensor, const Occluder& footprint) const;
 
-  /// Coverage by sector of 30 degrees, twelve from -180 degrees on; `radar_alive`, `camera_alive`
-  /// say which sensors speak. A sensor covers a sector when it covers the sector's middle. Watched:
-  /// of each kind (radar, camera) that is mounted for the sector one is alive. Degraded: of one
-  /// kind only. Blind: none. Range is that of the farthest-reaching living sensor.
-  [[nodiscard]] std::vector<SectorHealth> Sectors(std::span<const char> radar_alive,
-                                                  std::span<const char> camera_alive) const;
+  /// Coverage by sector of 30 degrees, twelve from -180 degrees on; `alive` says which sensors
+  /// speak, in the order of VehicleConfig::AllSensors(). A sensor covers a sector when it covers
+  /// the sector's middle. Watched: of each kind (radar, camera, objects) that is mounted for the
+  /// sector one is alive. Degraded: not of each kind. Blind: none. Range is that of the
+  /// farthest-reaching living sensor.
+  [[nodiscard]] std::vector<SectorHealth> Sectors(std::span<const char> alive) const;
 
  private:
   static constexpr int kSectors = 12;
 
   struct Sensor {
+    SensorKind kind = SensorKind::kRadar;
     Eigen::Vector2d p_B = Eigen::Vector2d::Zero();
     double yaw_rad = 0.0;
     double fov_left_rad = 0.0;  // From the axis, both positive.
@@ -159,9 +158,8 @@ class VisibilityMap {
   struct Rays;
 
   void AddSensor(const Sensor& sensor);
-  [[nodiscard]] const Sensor& RadarAt(int index) const;
-  [[nodiscard]] const Sensor& CameraAt(int index) const;
-  [[nodiscard]] Answer Ask(const Sensor* first, const Box& footprint) const;
+  [[nodiscard]] const Sensor& At(SensorKey sensor) const;
+  [[nodiscard]] Answer AskAll(const Sensor* first, const Box& footprint) const;
   [[nodiscard]] std::size_t CollectInTheWay(const Box& footprint, const Eigen::Vector2d& p_OS,
                                             const Fan& fan, InTheWay& in_the_way) const;
   [[nodiscard]] bool HasStaticNearer(const Viewpoint& viewpoint, const Fan& fan,
@@ -174,8 +172,8 @@ class VisibilityMap {
                                            bool stays_in_range);
 
   VisibilityConfig config_;
-  std::size_t radar_count_ = 0;
-  std::vector<Sensor> sensors_;  // Radars, then cameras.
+  std::array<std::size_t, kSensorKinds + 1> first_{};  // Of each kind in sensors_; their number.
+  std::vector<Sensor> sensors_;                        // As VehicleConfig::AllSensors().
   std::vector<Viewpoint> viewpoints_;
   StaticRaster raster_;
 

@@ -72,28 +72,20 @@ struct VisibilityMap::Rays {
   }
 };
 
-SensorView VisibilityMap::FromRadar(int index, const Occluder& footprint) const {
-  return See(RadarAt(index), Box(footprint));
-}
-
-SensorView VisibilityMap::FromCamera(int index, const Occluder& footprint) const {
-  return See(CameraAt(index), Box(footprint));
+SensorView VisibilityMap::From(SensorKey sensor, const Occluder& footprint) const {
+  return See(At(sensor), Box(footprint));
 }
 
 View VisibilityMap::Overall(const Occluder& footprint) const {
-  return Ask(nullptr, Box(footprint)).overall;
+  return AskAll(nullptr, Box(footprint)).overall;
 }
 
-VisibilityMap::Answer VisibilityMap::AskRadar(int index, const Occluder& footprint) const {
-  return Ask(&RadarAt(index), Box(footprint));
-}
-
-VisibilityMap::Answer VisibilityMap::AskCamera(int index, const Occluder& footprint) const {
-  return Ask(&CameraAt(index), Box(footprint));
+VisibilityMap::Answer VisibilityMap::Ask(SensorKey sensor, const Occluder& footprint) const {
+  return AskAll(&At(sensor), Box(footprint));
 }
 
 // `first` is asked first, if given: where its view is clear the others are not asked.
-VisibilityMap::Answer VisibilityMap::Ask(const Sensor* first, const Box& footprint) const {
+VisibilityMap::Answer VisibilityMap::AskAll(const Sensor* first, const Box& footprint) const {
   Answer answer;
   const auto rank = [](View view) {
     switch (view) {

@@ -67,7 +67,8 @@ class Judge {
     if (heard_ == 0) {
       Problem("no event is on a channel of this vehicle, which listens to " + Listed(inputs_) +
               "; the log holds " + Listed(others_) +
-              ". Name the channels in lcm.channels, the sensors in vehicle.radars and cameras");
+              ". Name the channels in lcm.channels, the sensors in vehicle.radars, cameras and "
+              "objects");
       return std::move(verdict_);
     }
     if (accepted_ == 0) {

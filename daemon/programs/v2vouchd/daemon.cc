@@ -272,10 +272,10 @@ class Daemon {
         spdlog::warn(
             "event=mount_moved sensor=radar_{} yaw_correction_deg={:.2f} sigma_deg={:.2f} "
             "hint=\"check the mount and calibrate again\"",
-            SensorKey(radars[i].name), correction_deg, sigma_deg);
+            LowerCaseName(radars[i].name), correction_deg, sigma_deg);
       } else {
         spdlog::info("event=mount_right sensor=radar_{} yaw_correction_deg={:.2f} sigma_deg={:.2f}",
-                     SensorKey(radars[i].name), correction_deg, sigma_deg);
+                     LowerCaseName(radars[i].name), correction_deg, sigma_deg);
       }
     }
   }

@@ -70,13 +70,13 @@ template <class Sensor>
 Sensor* SensorCalled(std::vector<Sensor>& sensors, std::string_view name, std::string& problem) {
   Sensor* found = nullptr;
   for (Sensor& sensor : sensors) {
-    if (SensorKey(sensor.name) != name) continue;
+    if (LowerCaseName(sensor.name) != name) continue;
     if (found != nullptr) problem = "two sensors of this vehicle are called so in lower case";
     found = &sensor;
   }
   if (found == nullptr) {
     std::vector<std::string> names;
-    for (const Sensor& sensor : sensors) names.push_back(SensorKey(sensor.name));
+    for (const Sensor& sensor : sensors) names.push_back(LowerCaseName(sensor.name));
     problem = "this vehicle has no such sensor" + DidYouMean(name, names);
   }
   return problem.empty() ? found : nullptr;

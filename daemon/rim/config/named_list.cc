@@ -12,10 +12,11 @@ namespace {
 
 // What a sensor cannot do without: where it sits and what it sees. Noise and rates have defaults
 // that suit most sensors.
-constexpr std::array<NamedList, 3> kNamedLists = {{
+constexpr std::array<NamedList, 4> kNamedLists = {{
     {"vehicle.radars", "name", "x_m y_m yaw_deg half_fov_deg max_range_m"},
     {"vehicle.cameras", "name",
      "x_m y_m z_m yaw_deg image_width_px image_height_px fx_px fy_px cx_px cy_px"},
+    {"vehicle.objects", "name", "x_m y_m yaw_deg half_fov_deg max_range_m"},
     {"detector.classes", "id", "class", false},
 }};
 

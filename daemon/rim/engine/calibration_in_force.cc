@@ -37,7 +37,7 @@ wire::CalibrationInForce CalibrationInForce(const DaemonConfig& config) {
   };
   const VehicleConfig& vehicle = config.perception.vehicle;
   for (const RadarConfig& radar : vehicle.radars) {
-    const std::string sensor = "radar_" + SensorKey(radar.name);
+    const std::string sensor = "radar_" + LowerCaseName(radar.name);
     add(sensor + ".x_m", radar.x_m);
     add(sensor + ".y_m", radar.y_m);
     add(sensor + ".yaw_deg", ToDegrees(radar.yaw_rad));
@@ -45,7 +45,7 @@ wire::CalibrationInForce CalibrationInForce(const DaemonConfig& config) {
     add(sensor + ".clock_offset_s", radar.clock_offset_s);
   }
   for (const CameraConfig& camera : vehicle.cameras) {
-    const std::string sensor = "camera_" + SensorKey(camera.name);
+    const std::string sensor = "camera_" + LowerCaseName(camera.name);
     add(sensor + ".x_m", camera.x_m);
     add(sensor + ".y_m", camera.y_m);
     add(sensor + ".z_m", camera.z_m);

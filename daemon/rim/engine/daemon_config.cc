@@ -57,10 +57,13 @@ class Checks {
 
 // Calibrations spell sensors in lower case: "Front" and "FRONT" would share one entry.
 template <class Sensor>
-void CheckKeys(const std::string& list, const std::vector<Sensor>& sensors, Checks& checks) {
+void CheckSensors(const std::string& list, const std::vector<Sensor>& sensors, Checks& checks) {
+  if (sensors.size() > static_cast<std::size_t>(kMostSensorsOfAKind)) {
+    checks.Problem(list, "must be at most " + std::to_string(kMostSensorsOfAKind));
+  }
   std::map<std::string, std::string> names;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const auto [entry, is_new] = names.emplace(SensorKey(sensors[i].name), sensors[i].name);
+    const auto [entry, is_new] = names.emplace(LowerCaseName(sensors[i].name), sensors[i].name);
     if (is_new || entry->second == sensors[i].name) continue;  // Equal ones share a channel.
     checks.Problem(list + "[" + std::to_string(i) + "].name",
                    sensors[i].name + ": differs from " + entry->second + " by its case only");
@@ -75,6 +78,8 @@ std::string KeyOf(const wire::InputChannel& channel) {
     case wire::InputKind::kCameraBoxes:
     case wire::InputKind::kCameraImage:
       return "vehicle.cameras" + index;
+    case wire::InputKind::kObjects:
+      return "vehicle.objects" + index;
     case wire::InputKind::kEgoMotion:
       return "lcm.channels.ego_motion";
     case wire::InputKind::kGnss:
@@ -113,15 +118,15 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
   if (!IsVehicleId(vehicle.id)) {
     checks.Problem("vehicle.id", "must have at most 64 printable ASCII characters");
   }
-  constexpr std::size_t kMaxSensors = 32;
-  if (vehicle.radars.size() > kMaxSensors) {
-    checks.Problem("vehicle.radars", "must be at most 32");
+  CheckSensors("vehicle.radars", vehicle.radars, checks);
+  CheckSensors("vehicle.cameras", vehicle.cameras, checks);
+  CheckSensors("vehicle.objects", vehicle.objects, checks);
+  for (std::size_t i = 0; i < vehicle.objects.size(); ++i) {
+    if (vehicle.objects[i].min_range_m >= vehicle.objects[i].max_range_m) {
+      checks.Problem("vehicle.objects[" + std::to_string(i) + "].min_range_m",
+                     "must be below max_range_m");
+    }
   }
-  if (vehicle.cameras.size() > kMaxSensors) {
-    checks.Problem("vehicle.cameras", "must be at most 32");
-  }
-  CheckKeys("vehicle.radars", vehicle.radars, checks);
-  CheckKeys("vehicle.cameras", vehicle.cameras, checks);
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
     if (vehicle.radars[i].min_range_m >= vehicle.radars[i].max_range_m) {
       checks.Problem("vehicle.radars[" + std::to_string(i) + "].min_range_m",

@@ -102,6 +102,8 @@ std::size_t Engine::ChannelOf(const Diagnostic& diagnostic, std::size_t current)
         return kind == wire::InputKind::kRadar;
       case InputSource::kCamera:
         return kind == wire::InputKind::kCameraBoxes || kind == wire::InputKind::kCameraImage;
+      case InputSource::kObjects:
+        return kind == wire::InputKind::kObjects;
       case InputSource::kBsm:
         return kind == wire::InputKind::kBsm;
       case InputSource::kThis:
@@ -134,7 +136,8 @@ void Engine::Take(std::size_t channel, const Input& input, Outbox& outbox) {
 
   if (outputs_.has_lists) PublishLists(outbox);
   if (outputs_.has_v2v_list) {
-    wire::EncodeList(outputs_.v2v, outbox.Add(config_.lcm.channels.tracks_v2v));
+    wire::EncodeList(outputs_.v2v, config_.perception.vehicle,
+                     outbox.Add(config_.lcm.channels.tracks_v2v));
   }
   for (const MisbehaviorReport& report : outputs_.reports) {
     wire::EncodeReport(report, outbox.Add(config_.lcm.channels.misbehavior));
@@ -156,10 +159,10 @@ void Engine::PublishLists(Outbox& outbox) {
   // The digests are of what the core made. A list older than a predicted copy that went out before
   // it stays here: published time does not go back.
   list_bytes_.clear();
-  wire::EncodeList(outputs_.local, list_bytes_);
+  wire::EncodeList(outputs_.local, config_.perception.vehicle, list_bytes_);
   digest_local_.Add(list_bytes_);
   Send(names.tracks_local, outputs_.local.stamp, published_.local, outbox);
-  wire::EncodeList(outputs_.priority, list_bytes_);
+  wire::EncodeList(outputs_.priority, config_.perception.vehicle, list_bytes_);
   digest_priority_.Add(list_bytes_);
   Send(names.tracks_priority, outputs_.priority.stamp, published_.priority, outbox);
   status_.local_tracks = static_cast<int>(outputs_.local.tracks.size());
@@ -186,9 +189,9 @@ void Engine::PublishStale(Duration silence, Outbox& outbox) {
   perception_.PredictedLists(newest + ahead, predicted);
   if (!predicted.has_lists) return;
   const wire::ChannelNames& names = config_.lcm.channels;
-  wire::EncodeList(predicted.local, list_bytes_);
+  wire::EncodeList(predicted.local, config_.perception.vehicle, list_bytes_);
   Send(names.tracks_local, predicted.local.stamp, published_.local, outbox);
-  wire::EncodeList(predicted.priority, list_bytes_);
+  wire::EncodeList(predicted.priority, config_.perception.vehicle, list_bytes_);
   Send(names.tracks_priority, predicted.priority.stamp, published_.priority, outbox);
 }
 
@@ -213,7 +216,7 @@ void Engine::PublishStatus(Outbox& outbox) {
   const std::vector<RadarConfig>& radars = config_.perception.vehicle.radars;
   for (std::size_t i = 0; i < radars.size(); ++i) {
     const MountVerdict& mount = monitor_.verdicts()[i];
-    status_.mounts.push_back({.sensor = "radar_" + SensorKey(radars[i].name),
+    status_.mounts.push_back({.sensor = "radar_" + LowerCaseName(radars[i].name),
                               .stamp = mount.stamp,
                               .yaw_correction_rad = mount.yaw_correction_rad,
                               .yaw_sigma_rad = mount.yaw_sigma_rad,

@@ -23,6 +23,8 @@ std::optional<NoticeSubject> SubjectOf(const wire::InputChannel& channel) {
     case wire::InputKind::kCameraBoxes:
     case wire::InputKind::kCameraImage:
       return NoticeSubject{NoticeSubject::Kind::kCamera, index};
+    case wire::InputKind::kObjects:
+      return NoticeSubject{NoticeSubject::Kind::kObjects, index};
     case wire::InputKind::kEgoMotion:
       return NoticeSubject{NoticeSubject::Kind::kEgoMotion, 0};
     case wire::InputKind::kGnss:

@@ -26,6 +26,8 @@ bool IsChannelOf(const wire::InputChannel& channel, const NoticeSubject& subject
     case NoticeSubject::Kind::kCamera:
       return is_its_sensor && (channel.kind == wire::InputKind::kCameraBoxes ||
                                channel.kind == wire::InputKind::kCameraImage);
+    case NoticeSubject::Kind::kObjects:
+      return channel.kind == wire::InputKind::kObjects && is_its_sensor;
     case NoticeSubject::Kind::kV2v:
     case NoticeSubject::Kind::kSender:
       return channel.kind == wire::InputKind::kBsm;

@@ -62,6 +62,20 @@ SignatureState SignatureOf(int raw, FieldJudge& judge) {
   return SignatureState::kUnknown;
 }
 
+// What Part I tells beside the motion. J2735 calls more than 0.4 g hard braking
+// (VehicleEventFlags); wheelBrakes has a bit for each wheel, and the highest of five for
+// "unavailable".
+TrackEvents EventsOf(int wheel_brakes, const std::optional<double>& accel_long_mps2) {
+  constexpr double kHardBraking_mps2 = 0.4 * 9.80665;
+  constexpr int kWheels = 0x0F;
+  constexpr int kUnavailable = 0x10;
+  TrackEvents events = 0;
+  if (accel_long_mps2 && *accel_long_mps2 < -kHardBraking_mps2) events |= kHardBraking;
+  const bool is_known = wheel_brakes > 0 && (wheel_brakes & kUnavailable) == 0;
+  if (is_known && (wheel_brakes & kWheels) != 0) events |= kBrakeLamps;
+  return events;
+}
+
 // The same text about this type's own field.
 std::string_view RxText(std::string_view fault) {
   if (fault == "utime looks like milliseconds") return "rx_utime looks like milliseconds";
@@ -126,6 +140,7 @@ Result<Bsm> FromWire(const bsm_t& message, Timestamp received, RefusalTally& unu
       Radians(raw.Scaled(message.accelSet_yaw, -32767, 32767, 0, -0.01, "accelSet_yaw"));
   bsm.length_m = raw.Scaled(message.length, 1, 4095, 0, 0.01, "length");
   bsm.width_m = raw.Scaled(message.width, 1, 1023, 0, 0.01, "width");
+  bsm.events = EventsOf(message.wheelBrakes, bsm.accel_long_mps2);
   if (std::isinf(message.rssi_dbm)) judge.Unused("rssi_dbm");
   bsm.rssi_dbm = std::isfinite(message.rssi_dbm) ? static_cast<double>(message.rssi_dbm) : kNaN;
   return bsm;

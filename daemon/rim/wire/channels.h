@@ -7,11 +7,13 @@
 
 namespace v2vouch::wire {
 
-/// Channel names; a radar speaks on `radar_prefix` + NAME, a camera on `camera_prefix` + NAME with
-/// nothing, `image_suffix` or `detected_suffix` behind, as its `source` says.
+/// Channel names; a radar speaks on `radar_prefix` + NAME, a source of objects on `objects_prefix`
+/// + NAME, a camera on `camera_prefix` + NAME with nothing, `image_suffix` or `detected_suffix`
+/// behind, as its `source` says.
 struct ChannelNames {
   std::string radar_prefix = "RADAR_";
   std::string camera_prefix = "CAMERA_";
+  std::string objects_prefix = "OBJECTS_";
   std::string image_suffix = "_IMAGE";
   std::string detected_suffix = "_DETECTED";
   std::string ego_motion = "EGO_MOTION";
@@ -30,6 +32,7 @@ struct ChannelNames {
   void Visit(Archive& a) {
     a.Text("radar_prefix", radar_prefix);
     a.Text("camera_prefix", camera_prefix);
+    a.Text("objects_prefix", objects_prefix);
     a.Text("image_suffix", image_suffix);
     a.Text("detected_suffix", detected_suffix);
     a.Text("ego_motion", ego_motion);

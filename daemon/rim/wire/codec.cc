@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/rim/wire/codec.h"
 
+#include <algorithm>
 #include <exception>
 
 #include "daemon/common/base/check.h"
@@ -14,6 +15,7 @@
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
+#include "v2vouch/object_list_t.hpp"
 #include "v2vouch/obu_status_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/text_t.hpp"
@@ -46,13 +48,16 @@ bool LengthsFit(const calibration_t& m) { return Fits(m.num_parameters, m.parame
 bool LengthsFit(const camera_detections_t& m) { return Fits(m.num_boxes, m.boxes); }
 bool LengthsFit(const camera_image_t& m) { return Fits(m.num_bytes, m.data); }
 bool LengthsFit(const misbehavior_report_t& m) { return Fits(m.num_evidence, m.evidence); }
+bool LengthsFit(const object_list_t& m) { return Fits(m.num_objects, m.objects); }
 bool LengthsFit(const radar_scan_t& m) { return Fits(m.num_detections, m.detections); }
 bool LengthsFit(const daemon_status_t& m) {
   return Fits(m.num_inputs, m.inputs) && Fits(m.num_refusals, m.refusals) &&
          Fits(m.num_refusal_details, m.refusal_details) && Fits(m.num_latencies, m.latencies);
 }
 bool LengthsFit(const track_list_t& m) {
-  return Fits(m.num_sectors, m.sectors) && Fits(m.num_tracks, m.tracks);
+  return Fits(m.num_sectors, m.sectors) && Fits(m.num_tracks, m.tracks) &&
+         std::ranges::all_of(
+             m.tracks, [](const track_t& track) { return Fits(track.num_sources, track.sources); });
 }
 bool LengthsFit(const truth_list_t& m) {
   if (!Fits(m.num_objects, m.objects)) return false;
@@ -104,6 +109,7 @@ V2VOUCH_CODEC(ego_motion_t)
 V2VOUCH_CODEC(gnss_fix_t)
 V2VOUCH_CODEC(misbehavior_report_t)
 V2VOUCH_CODEC(radar_scan_t)
+V2VOUCH_CODEC(object_list_t)
 V2VOUCH_CODEC(obu_status_t)
 V2VOUCH_CODEC(text_t)
 V2VOUCH_CODEC(track_list_t)

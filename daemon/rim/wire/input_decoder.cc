@@ -86,6 +86,11 @@ std::vector<InputChannel> InputChannels(const VehicleConfig& vehicle, const Chan
         camera.source == CameraSource::kImage ? InputKind::kCameraImage : InputKind::kCameraBoxes;
     channels.push_back({name, kind, static_cast<int>(i), camera.period_s});
   }
+  for (std::size_t i = 0; i < vehicle.objects.size(); ++i) {
+    const ObjectSensorConfig& source = vehicle.objects[i];
+    channels.push_back({names.objects_prefix + source.name, InputKind::kObjects,
+                        static_cast<int>(i), source.period_s});
+  }
   channels.push_back({names.ego_gnss, InputKind::kGnss, 0, kGnssPeriod_s});
   channels.push_back({names.bsm, InputKind::kBsm, 0, 0.0});
   return channels;
@@ -129,6 +134,11 @@ Result<InputDecoder::Decoded> InputDecoder::Decode(std::size_t channel,
           ImageFromWire(std::move(*message), vehicle_.cameras[sensor], from.sensor, received);
       if (!image) return image.refusal();
       return Decoded(std::move(*image));
+    }
+    case InputKind::kObjects: {
+      const auto message = wire::Decode<object_list_t>(bytes);
+      if (!message) return message.refusal();
+      return AsInput(FromWire(*message, vehicle_.objects[sensor], from.sensor, received, dropped));
     }
     case InputKind::kEgoMotion: {
       const auto message = wire::Decode<ego_motion_t>(bytes);

@@ -17,18 +17,18 @@
 
 namespace v2vouch::wire {
 
-enum class InputKind { kRadar, kCameraBoxes, kCameraImage, kEgoMotion, kGnss, kBsm };
+enum class InputKind { kRadar, kCameraBoxes, kCameraImage, kObjects, kEgoMotion, kGnss, kBsm };
 
 /// One channel that this vehicle listens to.
 struct InputChannel {
   std::string name;
   InputKind kind = InputKind::kBsm;
-  int sensor = 0;         ///< Index of the radar or camera.
+  int sensor = 0;         ///< Index of the sensor in its list.
   double period_s = 0.0;  ///< Nominal; 0: messages come when they come.
 };
 
-/// Every input channel of a vehicle: ego motion, GNSS, radars, cameras (one channel each, as the
-/// camera's `source` says), BSMs.
+/// Every input channel of a vehicle: ego motion, radars, cameras (one channel each, as the
+/// camera's `source` says), sources of objects, GNSS, BSMs.
 std::vector<InputChannel> InputChannels(const VehicleConfig& vehicle, const ChannelNames& names);
 
 /// Where what our detector saw through `camera` is published: CAMERA_<NAME>_DETECTED.

@@ -20,6 +20,8 @@
 #include "v2vouch/misbehavior_report_t.hpp"
 #include "v2vouch/mount_status_t.hpp"
 #include "v2vouch/notice_t.hpp"
+#include "v2vouch/object_list_t.hpp"
+#include "v2vouch/object_t.hpp"
 #include "v2vouch/obu_status_t.hpp"
 #include "v2vouch/radar_detection_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
@@ -29,6 +31,7 @@
 #include "v2vouch/stage_latency_t.hpp"
 #include "v2vouch/text_t.hpp"
 #include "v2vouch/track_list_t.hpp"
+#include "v2vouch/track_source_t.hpp"
 #include "v2vouch/track_t.hpp"
 #include "v2vouch/truth_bsm_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
@@ -329,6 +332,32 @@ constexpr Field kBsmVerdictFields[] = {
 };
 constexpr Layout kBsmVerdict = MakeLayout("bsm_verdict_t", kBsmVerdictFields, 1024);
 
+constexpr Field kObjectFields[] = {
+    {.name = "x_m", .kind = Kind::kDouble},
+    {.name = "y_m", .kind = Kind::kDouble},
+    {.name = "yaw_rad", .kind = Kind::kDouble},
+    {.name = "has_front", .kind = Kind::kInt8},
+    {.name = "length_m", .kind = Kind::kDouble},
+    {.name = "width_m", .kind = Kind::kDouble},
+    {.name = "height_m", .kind = Kind::kDouble},
+    {.name = "velocity_x_mps", .kind = Kind::kDouble},
+    {.name = "velocity_y_mps", .kind = Kind::kDouble},
+    {.name = "covariance", .kind = Kind::kDouble, .fixed = 25},
+    {.name = "class_name", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "score", .kind = Kind::kDouble},
+    {.name = "id", .kind = Kind::kInt64},
+};
+constexpr Layout kObject = MakeLayout("object_t", kObjectFields);
+
+constexpr Field kObjectListFields[] = {
+    {.name = "utime", .kind = Kind::kInt64},
+    {.name = "seq", .kind = Kind::kInt64},
+    {.name = "sensor", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "num_objects", .kind = Kind::kInt32},
+    {.name = "objects", .kind = Kind::kStruct, .type = &kObject, .max_count = 512},
+};
+constexpr Layout kObjectList = MakeLayout("object_list_t", kObjectListFields, 512 * 1024);
+
 constexpr Field kRadarDetectionFields[] = {
     {.name = "range_m", .kind = Kind::kDouble},
     {.name = "azimuth_rad", .kind = Kind::kDouble},
@@ -363,6 +392,13 @@ constexpr Field kTextFields[] = {
 };
 constexpr Layout kText = MakeLayout("text_t", kTextFields, kMaxTextBytes + 1024);
 
+constexpr Field kTrackSourceFields[] = {
+    {.name = "kind", .kind = Kind::kInt8},
+    {.name = "name", .kind = Kind::kString, .max_length = kMaxNameBytes},
+    {.name = "last_utime", .kind = Kind::kInt64},
+};
+constexpr Layout kTrackSource = MakeLayout("track_source_t", kTrackSourceFields);
+
 constexpr Field kTrackFields[] = {
     {.name = "id", .kind = Kind::kInt64},
     {.name = "local_id", .kind = Kind::kInt64},
@@ -386,9 +422,8 @@ constexpr Field kTrackFields[] = {
     {.name = "existence", .kind = Kind::kDouble},
     {.name = "visibility", .kind = Kind::kInt8},
     {.name = "is_confirmed", .kind = Kind::kInt8},
-    {.name = "last_radar_utime", .kind = Kind::kInt64},
-    {.name = "last_camera_utime", .kind = Kind::kInt64},
-    {.name = "last_v2v_utime", .kind = Kind::kInt64},
+    {.name = "num_sources", .kind = Kind::kInt32},
+    {.name = "sources", .kind = Kind::kStruct, .type = &kTrackSource, .max_count = 64},
     {.name = "v2v_id", .kind = Kind::kByte, .fixed = 4},
     {.name = "trust_state", .kind = Kind::kInt8},
     {.name = "bridge_budget_s", .kind = Kind::kDouble},
@@ -396,6 +431,7 @@ constexpr Field kTrackFields[] = {
     {.name = "longitude_rad", .kind = Kind::kDouble},
     {.name = "bias_east_m", .kind = Kind::kDouble},
     {.name = "bias_north_m", .kind = Kind::kDouble},
+    {.name = "events", .kind = Kind::kByte},
 };
 constexpr Layout kTrack = MakeLayout("track_t", kTrackFields);
 
@@ -511,12 +547,15 @@ V2VOUCH_LAYOUT(mount_status_t, kMountStatus)
 V2VOUCH_LAYOUT(notice_t, kNotice)
 V2VOUCH_LAYOUT(obu_status_t, kObuStatus)
 V2VOUCH_LAYOUT(misbehavior_report_t, kMisbehaviorReport)
+V2VOUCH_LAYOUT(object_t, kObject)
+V2VOUCH_LAYOUT(object_list_t, kObjectList)
 V2VOUCH_LAYOUT(radar_detection_t, kRadarDetection)
 V2VOUCH_LAYOUT(radar_scan_t, kRadarScan)
 V2VOUCH_LAYOUT(refusal_t, kRefusal)
 V2VOUCH_LAYOUT(sector_health_t, kSectorHealth)
 V2VOUCH_LAYOUT(sender_bias_t, kSenderBias)
 V2VOUCH_LAYOUT(text_t, kText)
+V2VOUCH_LAYOUT(track_source_t, kTrackSource)
 V2VOUCH_LAYOUT(track_t, kTrack)
 V2VOUCH_LAYOUT(track_list_t, kTrackList)
 V2VOUCH_LAYOUT(truth_sensor_t, kTruthSensor)

@@ -2,6 +2,8 @@
 #include "daemon/rim/wire/output_encoder.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/data/object_class.h"
@@ -47,7 +49,29 @@ void PutKinematics(const KinematicState& state, const Pose<Odometry, Body>& X_OB
   }
 }
 
-track_t ToWire(const PublishedTrack& from, const Pose<Odometry, Body>& X_OB) {
+void PutSources(const PublishedTrack& from, const VehicleConfig& vehicle, track_t& to) {
+  static_assert(static_cast<int>(SensorKind::kRadar) == 0 && kSensorKinds == 3);
+  const auto sources = from.track.support.sources();
+  std::array<SensorSupport::Source, SensorSupport::kMostSources> sorted;
+  const auto end = std::copy(sources.begin(), sources.end(), sorted.begin());
+  std::sort(sorted.begin(), end, [](const auto& a, const auto& b) { return a.sensor < b.sensor; });
+  to.sources.reserve(sources.size() + 1);
+  const auto add = [&to](int kind, std::string name, Timestamp last) {
+    track_source_t source{};
+    source.kind = static_cast<std::int8_t>(kind);
+    source.name = std::move(name);
+    source.last_utime = ToMicros(last);
+    to.sources.push_back(std::move(source));
+  };
+  for (auto source = sorted.begin(); source != end; ++source) {
+    add(static_cast<int>(source->sensor.kind), vehicle.NameOf(source->sensor), source->last);
+  }
+  if (from.last_v2v) add(track_source_t::V2V, {}, *from.last_v2v);
+  SetCount(to.num_sources, to.sources);
+}
+
+track_t ToWire(const PublishedTrack& from, const VehicleConfig& vehicle,
+               const Pose<Odometry, Body>& X_OB) {
   track_t to{};
   const LocalTrack& track = from.track;
   to.id = static_cast<std::int64_t>(track.id);
@@ -62,9 +86,7 @@ track_t ToWire(const PublishedTrack& from, const Pose<Odometry, Body>& X_OB) {
   to.existence = track.existence;
   to.visibility = static_cast<std::int8_t>(track.visibility);
   to.is_confirmed = track.is_confirmed ? 1 : 0;
-  to.last_radar_utime = MicrosOrNever(track.last_radar);
-  to.last_camera_utime = MicrosOrNever(track.last_camera);
-  to.last_v2v_utime = MicrosOrNever(from.last_v2v);
+  PutSources(from, vehicle, to);
   PutSender(from.sender, to.v2v_id);
   to.trust_state = static_cast<std::int8_t>(from.trust);
   to.bridge_budget_s = from.bridge_budget_s;
@@ -72,12 +94,13 @@ track_t ToWire(const PublishedTrack& from, const Pose<Odometry, Body>& X_OB) {
   to.longitude_rad = from.position ? from.position->longitude_rad : kNaN;
   to.bias_east_m = from.bias_east_m;
   to.bias_north_m = from.bias_north_m;
+  to.events = from.events;
   return to;
 }
 
 }  // namespace
 
-track_list_t ToWire(const TrackList& list) {
+track_list_t ToWire(const TrackList& list, const VehicleConfig& vehicle) {
   track_list_t to{};
   to.utime = ToMicros(list.stamp);
   to.seq = list.seq;
@@ -99,13 +122,16 @@ track_list_t ToWire(const TrackList& list) {
   SetCount(to.num_sectors, to.sectors);
   const std::size_t count = std::min(list.tracks.size(), kMaxTracks);
   to.tracks.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) to.tracks.push_back(ToWire(list.tracks[i], list.X_OB));
+  for (std::size_t i = 0; i < count; ++i) {
+    to.tracks.push_back(ToWire(list.tracks[i], vehicle, list.X_OB));
+  }
   SetCount(to.num_tracks, to.tracks);
   return to;
 }
 
-void EncodeList(const TrackList& list, std::vector<std::uint8_t>& bytes) {
-  Encode(ToWire(list), bytes);
+void EncodeList(const TrackList& list, const VehicleConfig& vehicle,
+                std::vector<std::uint8_t>& bytes) {
+  Encode(ToWire(list, vehicle), bytes);
 }
 
 void EncodeReport(const MisbehaviorReport& report, std::vector<std::uint8_t>& bytes) {

@@ -18,10 +18,12 @@ namespace v2vouch::wire {
 /// rear axle, yaw against the ego's, speeds over ground. The body covariance is the same one
 /// turned:
 ///     P_B = J P_O J^T,  J = diag(R_BO, 1, 1, 1, 1)
-/// The ego's own pose counts as known: tracks live in the frame it dead-reckons.
-track_list_t ToWire(const TrackList& list);
+/// The ego's own pose counts as known: tracks live in the frame it dead-reckons. `vehicle` names
+/// the sensors that have measured them.
+track_list_t ToWire(const TrackList& list, const VehicleConfig& vehicle);
 
-void EncodeList(const TrackList& list, std::vector<std::uint8_t>& bytes);
+void EncodeList(const TrackList& list, const VehicleConfig& vehicle,
+                std::vector<std::uint8_t>& bytes);
 void EncodeReport(const MisbehaviorReport& report, std::vector<std::uint8_t>& bytes);
 void EncodeVerdict(const BsmVerdict& verdict, std::vector<std::uint8_t>& bytes);
 /// As the camera `camera` would have told them itself: its clock offset taken off the stamp again.

@@ -10,6 +10,7 @@
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
+#include "v2vouch/object_list_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 
 namespace v2vouch::wire {
@@ -26,6 +27,8 @@ Result<RadarScan> FromWire(const radar_scan_t& message, const RadarConfig& radar
                            Timestamp received, RefusalTally& dropped);
 Result<CameraDetections> FromWire(const camera_detections_t& message, const CameraConfig& camera,
                                   int index, Timestamp received, RefusalTally& dropped);
+Result<ObjectList> FromWire(const object_list_t& message, const ObjectSensorConfig& source,
+                            int index, Timestamp received, RefusalTally& dropped);
 /// speed = measured / speed_scale,  yaw rate = measured - yaw_rate_bias.
 Result<EgoMotion> FromWire(const ego_motion_t& message, const VehicleConfig& vehicle,
                            Timestamp received, RefusalTally& unused);

@@ -64,6 +64,7 @@ ClaimInOdometry Alignment::ToOdometry(const Claim& claim, Timestamp at) const {
   out.has_course = claim.has_course;
   out.accel_mps2 = claim.accel_mps2;
   out.yaw_rate_radps = claim.yaw_rate_radps;
+  out.events = claim.events;
 
   Motion motion;
   motion.p = (X_OL * Point<LocalEnu>{p_L.x(), p_L.y()}).vector();

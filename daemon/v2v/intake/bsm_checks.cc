@@ -109,6 +109,7 @@ Claim ToClaim(const Bsm& bsm, double age_s, const IntakeConfig& config) {
   claim.accuracy_is_poor = bsm.semi_major_m.value_or(0.0) > config.max_position_sigma_m;
   claim.length_m = bsm.length_m;
   claim.width_m = bsm.width_m;
+  claim.events = bsm.events;
   return claim;
 }
 

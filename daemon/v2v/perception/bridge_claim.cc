@@ -46,6 +46,7 @@ VehicleAction UseClaim(const SenderRecord& record, PriorityVehicle& vehicle,
   vehicle.PredictTo(here.stamp, config.filter);
   const ClaimFit fit = vehicle.filter.Update(here, config.filter);
   vehicle.last_v2v = here.stamp;
+  vehicle.events = here.events;
   if (vehicle.is_supported) {
     vehicle.misfits_in_a_row = 0;  // Sensors judge it by its raw residual.
     if (fit.is_used) {
@@ -76,6 +77,7 @@ VehicleAction UseMotion(const SenderRecord& record, PriorityVehicle& vehicle,
   const double since_last_s = ToSeconds(here.stamp - vehicle.last_v2v);
   const bool is_used = vehicle.filter.UpdateMotion(here, config.filter);
   vehicle.last_v2v = here.stamp;
+  vehicle.events = here.events;
   if (vehicle.is_supported) return VehicleAction::GoOn();
   if (CountMisfits(vehicle, is_used, true, since_last_s, config.bridge)) {
     return VehicleAction::End();

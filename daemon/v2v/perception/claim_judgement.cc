@@ -122,7 +122,7 @@ bool AgreesButForHeight(const V2vView& view, const PairTable::Pair& pair, Timest
           has_seen(trust.slow_observations, trust.slow_observed_s)) &&
          evidence.is_nis_consistent() && evidence.is_speed_consistent(view.config.safe) &&
          evidence.level() <= view.config.safe.max_level && seen != nullptr && seen->is_sure &&
-         ToSeconds(now - seen->track.LastHit()) <= view.config.bridge.support_s;
+         ToSeconds(now - seen->track.support.last()) <= view.config.bridge.support_s;
 }
 
 std::optional<PriorityVehicle> Validate(const V2vView& view, SenderRecord& record,
@@ -140,7 +140,7 @@ std::optional<PriorityVehicle> Validate(const V2vView& view, SenderRecord& recor
   if (view.list.HasAnotherAt(track.state_O.mean.head<2>(), record.sender, false)) {
     return std::nullopt;
   }
-  const Timestamp last_hit = track.LastHit();
+  const Timestamp last_hit = track.support.last();
   const bool is_hit = ToSeconds(here.stamp - last_hit) <= config.bridge.support_s;
   const PairEvidence& evidence = pair->evidence;
   if (!record.trust.TryValidate(
@@ -176,10 +176,8 @@ std::optional<PriorityVehicle> Validate(const V2vView& view, SenderRecord& recor
       .extent = track.extent,
       .object_class = track.object_class,
       .existence = track.existence,
-      .last_radar = track.last_radar,
-      .last_camera = track.last_camera,
-      .radar_hits = track.radar_hits,
-      .camera_hits = track.camera_hits};
+      .support = track.support,
+      .events = here.events};
   vehicle.PredictTo(here.stamp, config.filter);
   return vehicle;
 }

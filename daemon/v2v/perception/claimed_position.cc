@@ -84,7 +84,7 @@ std::array<ClaimedPlace::Look, ClaimedPlace::kPlaces> ObserveClaimedPosition(
                           view.config.bridge.least_detection);
   };
   // Whether the claimed position itself can be judged decides for its surroundings, too.
-  const auto claimed = clear_to(ClearTo::kBothKinds, footprints[0]);
+  const auto claimed = clear_to(ClearTo::kEveryKind, footprints[0]);
   for (std::size_t i = 0; i < footprints.size(); ++i) {
     if (is_occupied[i] ||
         (may_stand && map.HasStandingReturn(footprints[i].centre_O, kStandingReach_m))) {

@@ -56,12 +56,27 @@ SectorState HealthAt(const Eigen::Vector2d& p_O, const LocalFrame& frame) {
   return StateAt(std::atan2(p_B.y_m, p_B.x_m), std::hypot(p_B.x_m, p_B.y_m), frame.sectors);
 }
 
+// Two kinds of sensors do not make one mistake.
+constexpr int kKindsThatVouch = 2;
+
+int HitsNeeded(SensorKind kind, const SensorSupportConfig& config) {
+  switch (kind) {
+    case SensorKind::kRadar:
+      return config.radar_hits;
+    case SensorKind::kCamera:
+      return config.camera_hits;
+    case SensorKind::kObjects:
+      break;
+  }
+  return config.object_hits;
+}
+
 bool Covers(View view) { return view == View::kClear || view == View::kUnknown; }
 
 }  // namespace
 
 bool WasHitLately(const LocalTrack& track, Timestamp now) {
-  return ToSeconds(now - track.LastHit()) <= kHit_s;
+  return ToSeconds(now - track.support.last()) <= kHit_s;
 }
 
 double PositionSigma(const KinematicState& state) {
@@ -111,21 +126,27 @@ CoObservation ForTrust(const ClaimInOdometry& claim, const KinematicState& sense
 
 bool AreSensorsSure(const LocalTrack& track, const LocalFrame& frame, const VisibilityMap& map,
                     const VehicleConfig& vehicle, const SensorSupportConfig& config) {
-  if (track.radar_hits >= config.radar_hits && track.camera_hits >= config.camera_hits) return true;
-  const Occluder footprint = FootprintOf(track);
-  bool radar_covers = false;
-  bool camera_covers = false;
-  for (int i = 0; i < static_cast<int>(vehicle.radars.size()); ++i) {
-    radar_covers = radar_covers || Covers(map.FromRadar(i, footprint).view);
+  int sure = 0;
+  int most_hits = 0;
+  for (const SensorKind kind : kAllSensorKinds) {
+    const int hits = track.support.hits(kind);
+    most_hits = std::max(most_hits, hits);
+    if (hits >= HitsNeeded(kind, config)) ++sure;
   }
-  for (int i = 0; i < static_cast<int>(vehicle.cameras.size()); ++i) {
-    camera_covers = camera_covers || Covers(map.FromCamera(i, footprint).view);
+  if (sure >= kKindsThatVouch) return true;
+  const Occluder footprint = FootprintOf(track);
+  int covering = 0;
+  for (const SensorKind kind : kAllSensorKinds) {
+    bool covers = false;
+    for (int i = 0; i < vehicle.SensorsOf(kind) && !covers; ++i) {
+      covers = Covers(map.From({kind, i}, footprint).view);
+    }
+    covering += covers ? 1 : 0;
   }
   // A silent sensor covers nothing, whatever its geometry says.
   const bool is_watched = HealthAt(footprint.centre_O, frame) == SectorState::kWatched;
-  if (radar_covers && camera_covers && is_watched) return false;
-  return ToSeconds(frame.stamp - track.start) >= config.single_s &&
-         std::max(track.radar_hits, track.camera_hits) >= config.single_hits;
+  if (covering >= kKindsThatVouch && is_watched) return false;
+  return ToSeconds(frame.stamp - track.start) >= config.single_s && most_hits >= config.single_hits;
 }
 
 bool AreClose(const Occluder& claimed, const LocalTrack& track, double slack_m) {
@@ -148,23 +169,17 @@ std::optional<double> ClearDetection(const Occluder& footprint, const LocalFrame
   const SectorState health = HealthAt(footprint.centre_O, frame);
   if (health == SectorState::kBlind) return std::nullopt;
   std::optional<double> best;
-  const auto consider = [&](const SensorView& seen, double probability) {
-    if (seen.view != View::kClear || seen.uncovered < kClearShare) return false;
-    best = std::max(best.value_or(0.0), probability * seen.uncovered);
-    return true;
-  };
-  bool is_clear_to_radar = vehicle.radars.empty();
-  for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
-    is_clear_to_radar |= consider(map.FromRadar(static_cast<int>(i), footprint),
-                                  vehicle.radars[i].detection_probability);
+  for (const SensorKind kind : kAllSensorKinds) {
+    bool is_clear = vehicle.SensorsOf(kind) == 0;
+    for (int i = 0; i < vehicle.SensorsOf(kind); ++i) {
+      const SensorView seen = map.From({kind, i}, footprint);
+      if (seen.view != View::kClear || seen.uncovered < kClearShare) continue;
+      const double probability = vehicle.DetectionProbabilityOf({kind, i});
+      best = std::max(best.value_or(0.0), probability * seen.uncovered);
+      is_clear = true;
+    }
+    if (whom == ClearTo::kEveryKind && !is_clear) return std::nullopt;
   }
-  if (whom == ClearTo::kBothKinds && !is_clear_to_radar) return std::nullopt;
-  bool is_clear_to_camera = vehicle.cameras.empty();
-  for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
-    is_clear_to_camera |= consider(map.FromCamera(static_cast<int>(i), footprint),
-                                   vehicle.cameras[i].detection_probability);
-  }
-  if (whom == ClearTo::kBothKinds && !is_clear_to_camera) return std::nullopt;
   if (best && health == SectorState::kDegraded) best = std::min(*best, least_detection);
   return best;
 }

@@ -32,17 +32,17 @@ PairObservation Compare(const ClaimInOdometry& claim, const KinematicState& sens
 /// The same for the trust checks: raw residuals, the sensors' own uncertainty beside them.
 CoObservation ForTrust(const ClaimInOdometry& claim, const KinematicState& sensed);
 
-/// Whether the sensors alone are sure enough of a track for PRIORITY: radar and camera where both
-/// cover the place, else the one that does, for long enough.
+/// Whether the sensors alone are sure enough of a track for PRIORITY: two kinds of them (radar,
+/// camera, objects) where two or more cover the place, else the one that does, for long enough.
 bool AreSensorsSure(const LocalTrack& track, const LocalFrame& frame, const VisibilityMap& map,
                     const VehicleConfig& vehicle, const SensorSupportConfig& config);
 
 /// Whether the two footprints come within `slack_m` of each other, along and across the track.
 bool AreClose(const Occluder& claimed, const LocalTrack& track, double slack_m);
 
-/// Whose clear view of a place counts: any sensor's, or a radar's and a camera's (of the kinds that
-/// are mounted). The map knows no wall that returns nothing; what two kinds call clear is clear.
-enum class ClearTo : std::uint8_t { kAnySensor, kBothKinds };
+/// Whose clear view of a place counts: any sensor's, or that of one of each kind that is mounted.
+/// The map knows no wall that returns nothing; what two kinds call clear is clear.
+enum class ClearTo : std::uint8_t { kAnySensor, kEveryKind };
 
 /// How likely the sensors are to detect a vehicle on this footprint, where the place is in clear
 /// view and the sector is watched; nullopt: not seeing it says nothing. A sector that

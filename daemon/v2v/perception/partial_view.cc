@@ -17,6 +17,9 @@ bool IsOfAPart(const SensorMeasurement& measurement, const BridgeConfig& config)
   if (const auto* radar = std::get_if<RadarMeasurement>(&measurement)) {
     return radar->visible_share < config.part_share;
   }
+  if (const auto* box = std::get_if<BoxMeasurement>(&measurement)) {
+    return box->visible_share < config.part_share;
+  }
   const auto* camera = std::get_if<CameraMeasurement>(&measurement);
   return camera != nullptr && (camera->left_is_cut || camera->right_is_cut);
 }
@@ -33,7 +36,8 @@ bool IsOnPartlyCovered(const Occluder& expected, const SensorMeasurement& measur
   const Point<Odometry> p_O = ego.X_OB * Point<Body>{radar.x_m + z->range_m * std::cos(bearing_B),
                                                      radar.y_m + z->range_m * std::sin(bearing_B)};
   return Holds(Box(expected), p_O.vector(), kOnVehicle_m) &&
-         map.FromRadar(z->radar, expected).uncovered < view.config.bridge.part_share;
+         map.From({SensorKind::kRadar, z->radar}, expected).uncovered <
+             view.config.bridge.part_share;
 }
 
 }  // namespace

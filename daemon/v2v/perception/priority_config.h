@@ -16,8 +16,11 @@ enum class AssociationMode {
 
 /// What the sensors must have seen of a vehicle before it may enter PRIORITY.
 struct SensorSupportConfig {
-  int radar_hits = 3;  ///< Where radar and camera both cover the place: this many of each.
+  /// Where two kinds of sensors or more cover the place, two kinds must have measured it, each as
+  /// often as this.
+  int radar_hits = 3;
   int camera_hits = 2;
+  int object_hits = 3;
   double single_s = 2.0;  ///< Where only one does: seen for so long ...
   int single_hits = 10;   ///< ... and so often.
 
@@ -25,6 +28,7 @@ struct SensorSupportConfig {
   void Visit(Archive& a) {
     a.Field("radar_hits", radar_hits, {.at_least = 1, .at_most = 100});
     a.Field("camera_hits", camera_hits, {.at_least = 1, .at_most = 100});
+    a.Field("object_hits", object_hits, {.at_least = 1, .at_most = 100});
     a.Field("single_s", single_s, {.at_least = 0.0, .at_most = 60.0});
     a.Field("single_hits", single_hits, {.at_least = 1, .at_most = 1000});
   }

@@ -139,7 +139,7 @@ std::optional<Finding> FindSeenElsewhere(const V2vView& view, PriorityVehicle& v
   const KinematicState here = vehicle.filter.kinematics();
   for (const TrackSnapshot& snapshot : view.tracks.tracks()) {
     const LocalTrack& track = snapshot.track;
-    if (!snapshot.is_hit || track.radar_hits + track.camera_hits < config.regain_hits) continue;
+    if (!snapshot.is_hit || track.support.hits() < config.regain_hits) continue;
     const bool is_own = track.id == vehicle.local_id;
     if (!is_own &&
         (view.list.Holds(track.id) || ToSeconds(vehicle.last_support - track.start) > kSlack_s)) {

@@ -49,7 +49,7 @@ void TrackSnapshots::Add(const LocalTrack& track, const Observed& observed) {
   const auto& [id, last, whole] = *snapshot.partial;
   snapshot.is_partial = ToSeconds(stamp_ - last) <= kPartial_s;
   // A track that coasts goes on as the part had it, however long.
-  snapshot.is_doubtful = !whole || ToSeconds(track.LastHit() - *whole) < kPartial_s;
+  snapshot.is_doubtful = !whole || ToSeconds(track.support.last() - *whole) < kPartial_s;
   if (snapshot.is_partial) Widen(snapshot.track.state_O.covariance);
 }
 

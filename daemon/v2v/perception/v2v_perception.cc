@@ -149,7 +149,7 @@ void V2vPerception::RememberTracks(const LocalFrame& frame, const VisibilityMap&
     const auto expected = ExpectedFootprint(View(), track, frame.stamp);
     tracks_.Add(track, {.is_sure = has_pair && AreSensorsSure(track, frame, map, settings_->vehicle,
                                                               config.sensor_support),
-                        .is_hit = track.IsHitAt(frame.stamp) ||
+                        .is_hit = track.support.IsHitAt(frame.stamp) ||
                                   std::ranges::find(frame.updates, track.id,
                                                     &SensorUpdate::track_id) != frame.updates.end(),
                         .is_partial = IsPartiallyObserved(View(), track, expected, frame, map)});

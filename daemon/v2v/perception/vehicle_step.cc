@@ -50,6 +50,7 @@ std::optional<Linearized> Linearize(const SensorMeasurement& measurement, const 
     return LinearizeCamera(x, extent, ego,
                            vehicle.cameras[static_cast<std::size_t>(camera->camera)], *camera);
   }
+  if (const auto* box = std::get_if<BoxMeasurement>(&measurement)) return LinearizeBox(x, *box);
   return std::nullopt;
 }
 
@@ -64,10 +65,7 @@ void TakeMeasurements(PriorityVehicle& vehicle, const TrackSnapshot& seen, const
     const auto linear = Linearize(update.measurement, x, extent, frame.ego, sensors);
     if (linear) vehicle.filter.Update(*linear);
   }
-  vehicle.last_radar = track.last_radar;
-  vehicle.last_camera = track.last_camera;
-  vehicle.radar_hits = track.radar_hits;
-  vehicle.camera_hits = track.camera_hits;
+  vehicle.support = track.support;
   if (track.object_class != ObjectClass::kUnknown) vehicle.object_class = track.object_class;
   if (!vehicle.is_supported) return;
   vehicle.existence = track.existence;
@@ -97,7 +95,7 @@ void ObserveCarriedPosition(const V2vView& view, PriorityVehicle& vehicle, const
   // vehicle in the next lane, nor one that is another sender's.
   const double slack_m = std::min(2.0 * footprint.position_sigma_m, kMostSlack_m);
   for (const LocalTrack& track : frame.tracks) {
-    if (!track.IsHitAt(frame.stamp) || !AreClose(footprint, track, slack_m)) continue;
+    if (!track.support.IsHitAt(frame.stamp) || !AreClose(footprint, track, slack_m)) continue;
     if (!IsAnothers(view, track.id, vehicle.sender)) return;
   }
   const BridgeConfig& config = view.config.bridge;

@@ -75,13 +75,11 @@ PublishedTrack LineOf(const PriorityVehicle& vehicle, Timestamp at,
   track.existence = vehicle.existence;
   track.is_confirmed = true;
   track.visibility = vehicle.visibility;
-  track.last_radar = vehicle.last_radar;
-  track.last_camera = vehicle.last_camera;
-  track.radar_hits = vehicle.radar_hits;
-  track.camera_hits = vehicle.camera_hits;
+  track.support = vehicle.support;
   line.local_id = vehicle.is_supported ? vehicle.local_id : 0;
   line.last_v2v = vehicle.last_v2v;
   line.sender = vehicle.sender;
+  line.events = vehicle.events;
   line.bridge_budget_s = std::max(0.0, vehicle.BudgetLeft_s(at, bridge));
   return line;
 }

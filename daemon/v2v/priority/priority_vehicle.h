@@ -49,10 +49,8 @@ struct PriorityVehicle {
   ObjectClass object_class = ObjectClass::kUnknown;
   double existence = 1.0;
   Visibility visibility = Visibility::kVisible;
-  std::optional<Timestamp> last_radar{};
-  std::optional<Timestamp> last_camera{};
-  int radar_hits = 0;
-  int camera_hits = 0;
+  SensorSupport support{};
+  TrackEvents events = 0;  ///< What its sender last told.
 
   [[nodiscard]] bool has_ended() const { return id == 0; }
 

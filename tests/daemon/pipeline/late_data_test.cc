@@ -245,8 +245,8 @@ std::string Bits(const TrackList& list) {
     add(line.track.extent.length_m);
     add(line.track.extent.width_m);
     add(line.track.visibility);
-    add(line.track.radar_hits);
-    add(line.track.camera_hits);
+    add(line.track.radar_hits());
+    add(line.track.camera_hits());
     add(line.local_id);
     add(line.sender);
     add(line.trust);

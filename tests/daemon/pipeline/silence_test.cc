@@ -40,8 +40,8 @@ Silence Feed(const SyntheticDrive& drive, int silent) {
   config.vehicle = drive.vehicle;
   Perception perception(config, std::make_unique<NullBiasEstimator>());
   const auto is_alive = [&](int sensor) {
-    return sensor < radars ? perception.IsRadarAlive(sensor)
-                           : perception.IsCameraAlive(sensor - radars);
+    return perception.IsAlive(sensor < radars ? SensorKey{SensorKind::kRadar, sensor}
+                                              : SensorKey{SensorKind::kCamera, sensor - radars});
   };
   Silence result;
   Outputs outputs;

@@ -23,7 +23,7 @@ SensorSpec Radar() {
 
 SensorSpec Camera() {
   SensorSpec camera;
-  camera.is_radar = false;
+  camera.kind = SensorKind::kCamera;
   camera.z_m = 1.4;
   camera.azimuth_sigma_rad = FromDegrees(0.15);
   camera.depression_sigma_rad = FromDegrees(0.2);

@@ -27,7 +27,7 @@ SpoofScene::SpoofScene(double length_s) {
   radar.max_range_m = 100.0;
   SensorSpec camera = radar;
   camera.channel = "CAMERA_FRONT";
-  camera.is_radar = false;
+  camera.kind = SensorKind::kCamera;
   camera.max_range_m = 120.0;
   log_.specs.is_given = true;
   log_.specs.sensors = {radar, camera};

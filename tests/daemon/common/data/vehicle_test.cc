@@ -6,9 +6,9 @@
 namespace v2vouch {
 namespace {
 
-TEST(SensorKey, IsTheNameInLowerCase) {
-  EXPECT_EQ(SensorKey("FRONT_Left2"), "front_left2");
-  EXPECT_EQ(SensorKey(""), "");
+TEST(LowerCaseName, IsTheNameInLowerCase) {
+  EXPECT_EQ(LowerCaseName("FRONT_Left2"), "front_left2");
+  EXPECT_EQ(LowerCaseName(""), "");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "daemon/common/base/angle.h"
-#include "daemon/local/tracking/box_measurement.h"
+#include "daemon/common/data/measurement.h"
 #include "daemon/local/tracking/tracker.h"
 
 namespace v2vouch {

@@ -154,20 +154,5 @@ TEST(PoseTracking, RefusedPosesAreCountedAndTouchNothing) {
   }
 }
 
-TEST(PackPoseId, IsUniqueForFourThousandPosesAndRisesWithTimeAndIndex) {
-  const Timestamp time = FromMicros(1'700'000'000'000'007);
-  std::set<std::uint64_t> ids;
-  std::uint64_t last = 0;
-  for (int index = 0; index < 4096; ++index) {
-    const std::uint64_t id = Tracker::PackPoseId(time, index);
-    EXPECT_GT(id, last);
-    last = id;
-    ids.insert(id);
-  }
-  EXPECT_EQ(ids.size(), 4096u);
-  EXPECT_GT(Tracker::PackPoseId(time + FromSeconds(0.01), 0), last);
-  EXPECT_EQ(ids.count(Tracker::PackId(time, 3, 7)), 0u);
-}
-
 }  // namespace
 }  // namespace v2vouch

@@ -319,12 +319,100 @@ TEST(Tracker, ACopyIsACheckpoint) {
   }
 }
 
-TEST(Tracker, IdsArePackedFromTheFirstDetection) {
-  const std::uint64_t id = Tracker::PackId(FromMicros(1'700'000'000'000'001), 9, 3);
-  EXPECT_EQ(id >> 12, 1'700'000'000'000'001U);
-  EXPECT_EQ(id >> 8 & 15U, 9U);
-  EXPECT_EQ(id & 255U, 3U);
-  EXPECT_LT(id, 1ULL << 63);
+// Ninety-six sensors, as many as the configuration allows, each with the most detections.
+TEST(Tracker, IdsTellTimeSensorAndDetectionApart) {
+  const Timestamp time = FromMicros(1'700'000'000'000'001);
+  std::uint64_t last = 0;
+  for (const SensorKind kind : kAllSensorKinds) {
+    for (int sensor = 0; sensor < kMostSensorsOfAKind; ++sensor) {
+      for (std::size_t i = 0; i < Tracker::kMostDetections; ++i) {
+        const std::uint64_t id = Tracker::PackId(time, {kind, sensor}, i);
+        ASSERT_GT(id, last);
+        last = id;
+      }
+    }
+  }
+  EXPECT_GT(Tracker::PackId(time + FromSeconds(0.001), {}, 0), last);
+  const Timestamp far_off = FromMicros(7'258'118'400'000'000);  // 2200, the last year we take.
+  EXPECT_LT(Tracker::PackId(far_off, {SensorKind::kObjects, 31}, Tracker::kMostDetections - 1),
+            std::uint64_t{1} << 63);
+}
+
+// 32 radars, 32 cameras and 32 sources of objects that all see another car at one instant.
+TEST(Tracker, AsManySensorsAsCanBeConfiguredGiveDistinctTracksAndAreAskedByTheirKind) {
+  VehicleConfig vehicle;
+  vehicle.radars.assign(32, VehicleConfig::DefaultRadars()[0]);
+  vehicle.cameras.assign(32, CameraConfig{});
+  vehicle.objects.assign(32, ObjectSensorConfig{});
+  TrackerConfig config;
+  Tracker tracker(config, vehicle);
+  EgoState ego;
+  ego.stamp = FromMicros(1'700'000'000'000'000);
+  const auto visible = [](const LocalTrack&) { return Detectability{0.0, Visibility::kVisible}; };
+  for (int i = 0; i < 32; ++i) {
+    tracker.Predict(ego.stamp);
+    RadarMeasurement radar{.radar = i, .range_m = 20.0 + 4.0 * i, .range_rate_mps = 5.0};
+    radar.covariance = Eigen::Vector3d(0.01, 1e-5, 0.01).asDiagonal();
+    radar.azimuth_rad = FromDegrees(-25.0);
+    radar.ground_range_rate_mps = 5.0;
+    tracker.UpdateRadar(i, ego, std::vector{radar}, visible);
+  }
+  for (int i = 0; i < 32; ++i) {
+    tracker.Predict(ego.stamp);
+    const double depression_rad = std::atan2(1.4, 15.0 + 1.2 * i);
+    CameraMeasurement camera{.camera = i,
+                             .azimuth_left_rad = FromDegrees(-3.0 + 2.0 * (i % 9)),
+                             .azimuth_right_rad = FromDegrees(-4.5 + 2.0 * (i % 9)),
+                             .depression_rad = depression_rad,
+                             .azimuth_sigma_rad = 1e-3,
+                             .depression_sigma_rad = 1e-3,
+                             .score = 0.9};
+    tracker.UpdateCamera(i, ego, std::vector{camera}, visible);
+  }
+  for (int i = 0; i < 32; ++i) {
+    tracker.Predict(ego.stamp);
+    const std::vector boxes = {BoxMeasurement{.x_m = -20.0 - 8.0 * i, .y_m = 10.0, .sensor = i}};
+    tracker.UpdateObjects(i, ego, boxes, visible);
+  }
+  std::set<std::uint64_t> ids;
+  std::array<int, kSensorKinds> started{};
+  for (const LocalTrack& track : tracker.tracks()) {
+    ids.insert(track.id);
+    ++started[static_cast<std::size_t>(track.support.sources()[0].sensor.kind)];
+  }
+  EXPECT_EQ(ids.size(), tracker.tracks().size());
+  EXPECT_EQ(started[0], 32);
+  EXPECT_GE(started[1], 20) << "some boxes show one place";
+  EXPECT_EQ(started[2], 32);
+}
+
+// A sensor's last frame is its own: had another one's been taken for it, the miss would count for
+// hardly anything (TrackerConfig::miss_memory_s).
+TEST(Tracker, AMissOfOneSensorCountsInFullWhateverAnotherOfTheSameNumberDid) {
+  VehicleConfig vehicle;
+  vehicle.radars.assign(20, VehicleConfig::DefaultRadars()[0]);
+  vehicle.objects.assign(20, ObjectSensorConfig{});
+  const auto existence_after = [&](int other) {
+    Tracker tracker(TrackerConfig{}, vehicle);
+    EgoState ego;
+    ego.stamp = FromMicros(1'700'000'000'000'000);
+    const auto visible = [](const LocalTrack&) { return Detectability{0.9, Visibility::kVisible}; };
+    for (int k = 0; k < 30; ++k) {
+      ego.stamp += FromSeconds(0.1);
+      tracker.Predict(ego.stamp);
+      tracker.UpdateObjects(0, ego, std::vector{BoxMeasurement{.x_m = 20.0}}, visible);
+    }
+    ego.stamp += FromSeconds(0.2);
+    tracker.Predict(ego.stamp);
+    const auto nothing = [](const LocalTrack&) { return Detectability{}; };
+    if (other >= 0) tracker.UpdateRadar(other, ego, {}, nothing);
+    ego.stamp += FromSeconds(0.001);
+    tracker.Predict(ego.stamp);
+    tracker.UpdateRadar(3, ego, {}, visible);
+    return tracker.tracks().empty() ? 0.0 : tracker.tracks()[0].existence;
+  };
+  EXPECT_DOUBLE_EQ(existence_after(19), existence_after(-1));  // 19 = 3 modulo 16.
+  EXPECT_GT(existence_after(3), existence_after(-1));
 }
 
 TEST(Tracker, MeasurementsThatAreNotFiniteAreSkippedAndAFullTableIsReported) {

@@ -20,7 +20,7 @@ const SectorHealth& At(const std::vector<SectorHealth>& sectors, double degrees)
 
 TEST(Sectors, TwelveSectorsCloseTheCircle) {
   const VisibilityMap map({}, {});
-  const auto sectors = map.Sectors(std::vector<char>{1, 1, 1}, std::vector<char>{1});
+  const auto sectors = map.Sectors(std::vector<char>{1, 1, 1, 1});
   ASSERT_EQ(sectors.size(), 12U);
   EXPECT_DOUBLE_EQ(sectors.front().from_rad, -kPi);
   EXPECT_NEAR(sectors.back().to_rad, kPi, 1e-12);
@@ -31,7 +31,7 @@ TEST(Sectors, TwelveSectorsCloseTheCircle) {
 
 TEST(Sectors, TheShippedVehicleWatchesFrontAndSidesAndIsBlindBehind) {
   const VisibilityMap map({}, {});
-  const auto sectors = map.Sectors(std::vector<char>{1, 1, 1}, std::vector<char>{1});
+  const auto sectors = map.Sectors(std::vector<char>{1, 1, 1, 1});
   EXPECT_EQ(At(sectors, 10.0).state, SectorState::kWatched);
   EXPECT_DOUBLE_EQ(At(sectors, 10.0).range_m, 160.0);
   EXPECT_EQ(At(sectors, -70.0).state, SectorState::kWatched);  // Radar alone is mounted there.
@@ -43,19 +43,19 @@ TEST(Sectors, TheShippedVehicleWatchesFrontAndSidesAndIsBlindBehind) {
 
 TEST(Sectors, ADeadSensorShows) {
   const VisibilityMap map({}, {});
-  const auto no_camera = map.Sectors(std::vector<char>{1, 1, 1}, std::vector<char>{0});
+  const auto no_camera = map.Sectors(std::vector<char>{1, 1, 1, 0});
   EXPECT_EQ(At(no_camera, 10.0).state, SectorState::kDegraded);
   EXPECT_EQ(At(no_camera, 70.0).state, SectorState::kWatched);
-  const auto no_right = map.Sectors(std::vector<char>{1, 1, 0}, std::vector<char>{1});
+  const auto no_right = map.Sectors(std::vector<char>{1, 1, 0, 1});
   EXPECT_EQ(At(no_right, -70.0).state, SectorState::kBlind);
   EXPECT_EQ(At(no_right, 70.0).state, SectorState::kWatched);
-  const auto camera_only = map.Sectors(std::vector<char>{0, 0, 0}, std::vector<char>{1});
+  const auto camera_only = map.Sectors(std::vector<char>{0, 0, 0, 1});
   EXPECT_EQ(At(camera_only, -10.0).state, SectorState::kDegraded);
   EXPECT_DOUBLE_EQ(At(camera_only, -10.0).range_m, 120.0);
   // The far radar is dead, the near one still looks ahead: the range says so.
-  const auto no_front = map.Sectors(std::vector<char>{0, 1, 1}, std::vector<char>{0});
+  const auto no_front = map.Sectors(std::vector<char>{0, 1, 1, 0});
   EXPECT_DOUBLE_EQ(At(no_front, 10.0).range_m, 80.0);
-  const auto none = map.Sectors({}, {});
+  const auto none = map.Sectors({});
   for (const SectorHealth& sector : none) EXPECT_EQ(sector.state, SectorState::kBlind);
 }
 

@@ -64,7 +64,7 @@ class VisibilityMapTest : public testing::Test {
     }
   }
   View Front(const Occluder& footprint) const {
-    return map_.FromRadar(kFrontRadar, footprint).view;
+    return map_.From({SensorKind::kRadar, kFrontRadar}, footprint).view;
   }
 
   VisibilityMap map_{VisibilityConfig{}, VehicleConfig{}};
@@ -72,10 +72,10 @@ class VisibilityMapTest : public testing::Test {
 
 TEST_F(VisibilityMapTest, AnEmptySceneIsClearInsideFieldOfViewAndRange) {
   Scene({});
-  const auto ahead = map_.FromRadar(kFrontRadar, Car(1, 50.0, 0.0));
+  const auto ahead = map_.From({SensorKind::kRadar, kFrontRadar}, Car(1, 50.0, 0.0));
   EXPECT_EQ(ahead.view, View::kClear);
   EXPECT_NEAR(ahead.uncovered, 1.0, 1e-12);
-  EXPECT_EQ(map_.FromCamera(0, Car(1, 50.0, 0.0)).view, View::kClear);
+  EXPECT_EQ(map_.From({SensorKind::kCamera, 0}, Car(1, 50.0, 0.0)).view, View::kClear);
   EXPECT_EQ(Front(Car(1, 180.0, 0.0)), View::kOutOfView);  // Range 160 m.
   EXPECT_EQ(Front(Car(1, 20.0, 40.0)), View::kOutOfView);  // Beyond 30 degrees.
   EXPECT_EQ(Front(Car(1, -30.0, 0.0)), View::kOutOfView);
@@ -92,10 +92,10 @@ TEST_F(VisibilityMapTest, FollowsTheEgosPose) {
 
 TEST_F(VisibilityMapTest, ACarBehindATruckIsOccluded) {
   Scene({Truck(7, 25.0, 0.0)});
-  const auto behind = map_.FromRadar(kFrontRadar, Car(1, 45.0, 0.0));
+  const auto behind = map_.From({SensorKind::kRadar, kFrontRadar}, Car(1, 45.0, 0.0));
   EXPECT_EQ(behind.view, View::kOccluded);
   EXPECT_LT(behind.uncovered, 0.2);
-  EXPECT_EQ(map_.FromCamera(0, Car(1, 45.0, 0.0)).view, View::kOccluded);
+  EXPECT_EQ(map_.From({SensorKind::kCamera, 0}, Car(1, 45.0, 0.0)).view, View::kOccluded);
   EXPECT_EQ(map_.Overall(Car(1, 45.0, 0.0)), View::kOccluded);
 }
 
@@ -109,7 +109,7 @@ TEST_F(VisibilityMapTest, BesideAndBeforeTheTruckIsClear) {
 TEST_F(VisibilityMapTest, HalfHiddenIsUnknown) {
   Scene({Truck(7, 25.0, 0.0)});
   // The truck's left edge at 1.25 m and 15 m off throws its shadow to 3.4 m at 41 m.
-  const auto half = map_.FromRadar(kFrontRadar, Car(1, 45.0, 3.0));
+  const auto half = map_.From({SensorKind::kRadar, kFrontRadar}, Car(1, 45.0, 3.0));
   EXPECT_EQ(half.view, View::kUnknown);
   EXPECT_GT(half.uncovered, 0.2);
   EXPECT_LT(half.uncovered, 0.8);
@@ -119,7 +119,8 @@ TEST_F(VisibilityMapTest, UncoveredGrowsSteadilyOutOfTheShadow) {
   Scene({Truck(7, 25.0, 0.0)});
   double last = -1.0;
   for (double y = 0.0; y <= 8.0; y += 0.1) {
-    const double uncovered = map_.FromRadar(kFrontRadar, Car(1, 45.0, y)).uncovered;
+    const double uncovered =
+        map_.From({SensorKind::kRadar, kFrontRadar}, Car(1, 45.0, y)).uncovered;
     EXPECT_GE(uncovered, last - 0.02) << "y = " << y;
     last = uncovered;
   }
@@ -153,10 +154,11 @@ TEST_F(VisibilityMapTest, FacadeHidesTheCrossRoadButNotTheStreetBeforeIt) {
   // A building's face across the view at x = 30 m, from y = 3 to 18 m, known by samples only.
   AccumulateWall({30.0, 3.0}, {30.0, 18.0});
   Scene({}, 1.0);
-  const auto behind = map_.FromRadar(kFrontRadar, Car(1, 45.0, 12.0, FromDegrees(90.0)));
+  const auto behind =
+      map_.From({SensorKind::kRadar, kFrontRadar}, Car(1, 45.0, 12.0, FromDegrees(90.0)));
   EXPECT_EQ(behind.view, View::kOccluded);
   EXPECT_LT(behind.uncovered, 0.2);
-  EXPECT_EQ(map_.FromCamera(0, Car(1, 45.0, 12.0)).view, View::kOccluded);
+  EXPECT_EQ(map_.From({SensorKind::kCamera, 0}, Car(1, 45.0, 12.0)).view, View::kOccluded);
   EXPECT_EQ(Front(Car(1, 20.0, 5.0)), View::kClear);
   EXPECT_EQ(Front(Car(1, 45.0, -5.0)), View::kClear);
   // Parked along the wall: its cells are not nearer than the car.
@@ -171,7 +173,7 @@ TEST_F(VisibilityMapTest, APoleMayHideButProvesNothing) {
     map_.AccumulateStatic(At(0.05 * scan), Ego(), std::vector{Standing(20.0, 0.0)});
   }
   Scene({}, 0.5);
-  const auto behind = map_.FromRadar(kFrontRadar, Car(1, 45.0, 0.0));
+  const auto behind = map_.From({SensorKind::kRadar, kFrontRadar}, Car(1, 45.0, 0.0));
   EXPECT_EQ(behind.view, View::kUnknown);
   EXPECT_GE(behind.uncovered, 0.5);
 }
@@ -198,7 +200,7 @@ TEST_F(VisibilityMapTest, AStoppedCarsOwnReturnsDoNotHideIt) {
         std::vector{Standing(32.75, -1.0 + random.Uniform(-1.0, 1.0)), Standing(34.0, -0.2)});
   }
   untracked.SetScene(Ego(2.0), std::vector{stopped});
-  EXPECT_EQ(untracked.FromRadar(kFrontRadar, stopped).view, View::kClear);
+  EXPECT_EQ(untracked.From({SensorKind::kRadar, kFrontRadar}, stopped).view, View::kClear);
 }
 
 TEST_F(VisibilityMapTest, AWideFlatClusterStandsForTheWallBetweenItsReflections) {
@@ -217,10 +219,10 @@ TEST_F(VisibilityMapTest, AWideFlatClusterStandsForTheWallBetweenItsReflections)
 TEST_F(VisibilityMapTest, RadarsAndCameraDifferByWhereTheyLook) {
   Scene({});
   const Occluder side = Car(1, 10.0, 20.0);
-  EXPECT_EQ(map_.FromRadar(kLeftRadar, side).view, View::kClear);
-  EXPECT_EQ(map_.FromRadar(2, side).view, View::kOutOfView);
-  EXPECT_EQ(map_.FromCamera(0, side).view, View::kOutOfView);
-  EXPECT_EQ(map_.FromCamera(0, Car(1, 130.0, 0.0)).view, View::kOutOfView);
+  EXPECT_EQ(map_.From({SensorKind::kRadar, kLeftRadar}, side).view, View::kClear);
+  EXPECT_EQ(map_.From({SensorKind::kRadar, 2}, side).view, View::kOutOfView);
+  EXPECT_EQ(map_.From({SensorKind::kCamera, 0}, side).view, View::kOutOfView);
+  EXPECT_EQ(map_.From({SensorKind::kCamera, 0}, Car(1, 130.0, 0.0)).view, View::kOutOfView);
   EXPECT_EQ(Front(Car(1, 130.0, 0.0)), View::kClear);
 }
 
@@ -228,7 +230,7 @@ TEST_F(VisibilityMapTest, AtTheEdgeOfTheFieldOfViewNothingIsClear) {
   Scene({});
   const double edge = FromDegrees(30.0);
   const Occluder half_in = Car(1, 3.75 + 40.0 * std::cos(edge), 40.0 * std::sin(edge), 1.0);
-  const auto seen = map_.FromRadar(kFrontRadar, half_in);
+  const auto seen = map_.From({SensorKind::kRadar, kFrontRadar}, half_in);
   EXPECT_EQ(seen.view, View::kUnknown);
   EXPECT_NEAR(seen.uncovered, 0.5, 0.2);
 }
@@ -241,10 +243,10 @@ TEST(VisibilityMap, ARearSensorSeesAcrossTheSeam) {
   vehicle.radars[0].yaw_rad = kPi;
   VisibilityMap map({}, vehicle);
   map.SetScene(Ego(), std::vector{Truck(7, -25.0, 0.0)});
-  EXPECT_EQ(map.FromRadar(0, Car(1, -45.0, 0.0)).view, View::kOccluded);
-  EXPECT_EQ(map.FromRadar(0, Car(1, -45.0, 15.0)).view, View::kClear);
-  EXPECT_EQ(map.FromRadar(0, Car(1, -45.0, -15.0)).view, View::kClear);
-  EXPECT_EQ(map.FromRadar(0, Car(1, 45.0, 0.0)).view, View::kOutOfView);
+  EXPECT_EQ(map.From({SensorKind::kRadar, 0}, Car(1, -45.0, 0.0)).view, View::kOccluded);
+  EXPECT_EQ(map.From({SensorKind::kRadar, 0}, Car(1, -45.0, 15.0)).view, View::kClear);
+  EXPECT_EQ(map.From({SensorKind::kRadar, 0}, Car(1, -45.0, -15.0)).view, View::kClear);
+  EXPECT_EQ(map.From({SensorKind::kRadar, 0}, Car(1, 45.0, 0.0)).view, View::kOutOfView);
 }
 
 // Property: a fully random scene never makes a query fail, and shares stay shares.
@@ -264,13 +266,14 @@ TEST(VisibilityMapProperty, AnswersStayInTheirRange) {
     map.SetScene(Ego(0.0, {random.Uniform(-5.0, 5.0), 0.0, random.Uniform(-4.0, 4.0)}), boxes);
     for (const Occluder& box : boxes) {
       for (int radar = 0; radar < 3; ++radar) {
-        const SensorView seen = map.FromRadar(radar, box);
+        const SensorView seen = map.From({SensorKind::kRadar, radar}, box);
         ASSERT_GE(seen.uncovered, 0.0);
         ASSERT_LE(seen.uncovered, 1.0 + 1e-12);
         ASSERT_TRUE(seen.view != View::kClear || seen.uncovered > 0.5);
       }
       const View overall = map.Overall(box);
-      ASSERT_TRUE(map.FromCamera(0, box).view != View::kClear || overall == View::kClear);
+      ASSERT_TRUE(map.From({SensorKind::kCamera, 0}, box).view != View::kClear ||
+                  overall == View::kClear);
     }
   }
 }
@@ -281,8 +284,8 @@ TEST(VisibilityMap, ACopyIsACheckpointAndSmall) {
   map.SetScene(Ego(), boxes);
   const VisibilityMap copy = map;
   map.SetScene(Ego(1.0), {});
-  EXPECT_EQ(copy.FromRadar(0, Car(1, 45.0, 0.0)).view, View::kOccluded);
-  EXPECT_EQ(map.FromRadar(0, Car(1, 45.0, 0.0)).view, View::kClear);
+  EXPECT_EQ(copy.From({SensorKind::kRadar, 0}, Car(1, 45.0, 0.0)).view, View::kOccluded);
+  EXPECT_EQ(map.From({SensorKind::kRadar, 0}, Car(1, 45.0, 0.0)).view, View::kClear);
   EXPECT_LE(sizeof(VisibilityMap), 13'000U);  // The raster; sensors, bins and boxes add 4 kB.
 }
 

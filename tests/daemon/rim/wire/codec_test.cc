@@ -20,6 +20,7 @@
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
+#include "v2vouch/object_list_t.hpp"
 #include "v2vouch/obu_status_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/text_t.hpp"
@@ -162,9 +163,10 @@ TEST(Codec, LargerThanTheTypeEverIsRefusedUnread) {
 template <class T>
 class CodecProperty : public testing::Test {};
 
-using AllTypes = testing::Types<bsm_t, calibration_t, camera_detections_t, camera_image_t,
-                                daemon_status_t, ego_motion_t, gnss_fix_t, misbehavior_report_t,
-                                obu_status_t, radar_scan_t, text_t, track_list_t, truth_list_t>;
+using AllTypes =
+    testing::Types<bsm_t, calibration_t, camera_detections_t, camera_image_t, daemon_status_t,
+                   ego_motion_t, gnss_fix_t, misbehavior_report_t, object_list_t, obu_status_t,
+                   radar_scan_t, text_t, track_list_t, truth_list_t>;
 TYPED_TEST_SUITE(CodecProperty, AllTypes);
 
 TYPED_TEST(CodecProperty, WellFormedBytesComeBackBitForBit) {

@@ -387,7 +387,7 @@ TEST(ListToWire, BodyFrameIsTheOdometryFrameSeenFromTheEgo) {
   line.track.state_O.covariance(kX, kSpeed) = line.track.state_O.covariance(kSpeed, kX) = 0.5;
   line.sender = 0x01020304;
   list.tracks = {line};
-  const track_list_t wire = ToWire(list);
+  const track_list_t wire = ToWire(list, VehicleConfig());
   ASSERT_EQ(wire.num_tracks, 1);
   const track_t& track = wire.tracks[0];
   EXPECT_EQ(static_cast<std::uint64_t>(track.id), 0xF000000000000001ull);
@@ -402,7 +402,31 @@ TEST(ListToWire, BodyFrameIsTheOdometryFrameSeenFromTheEgo) {
   EXPECT_EQ(track.v2v_id[0], 1);
   EXPECT_EQ(track.v2v_id[3], 4);
   EXPECT_TRUE(std::isnan(track.latitude_rad));
-  EXPECT_EQ(track.last_radar_utime, 0);
+  EXPECT_EQ(track.num_sources, 0);
+  EXPECT_EQ(track.events, 0);
+}
+
+TEST(ListToWire, NamesEverySourceWithItsLastMeasurement) {
+  VehicleConfig vehicle;  // Three radars, one camera.
+  vehicle.objects.push_back({.name = "LIDAR"});
+  PublishedTrack line;
+  SensorSupport& support = line.track.support;
+  support.Add({SensorKind::kObjects, 0}, FromMicros(kUtime + 3));
+  support.Add({SensorKind::kRadar, 2}, FromMicros(kUtime));
+  support.Add({SensorKind::kRadar, 2}, FromMicros(kUtime + 1));
+  support.Add({SensorKind::kCamera, 0}, FromMicros(kUtime + 2));
+  line.last_v2v = FromMicros(kUtime + 4);
+  line.events = kBrakeLamps;
+  TrackList list;
+  list.tracks = {line};
+  const track_t track = ToWire(list, vehicle).tracks[0];
+  std::string text;
+  for (const track_source_t& source : track.sources) {
+    text += std::to_string(source.kind) + " " + source.name + " " +
+            std::to_string(source.last_utime - kUtime) + "\n";
+  }
+  EXPECT_EQ(text, "0 FRONT_RIGHT 1\n1 FRONT 2\n2 LIDAR 3\n3  4\n");
+  EXPECT_EQ(track.events, track_t::EVENT_BRAKE_LAMPS);
 }
 
 // Everything we publish passes our own decoder.
@@ -411,7 +435,7 @@ TEST(OutputEncoder, OurOwnDecoderTakesWhatWeWrite) {
   TrackList list;
   list.tracks.resize(9000);  // More than a list may hold.
   list.sectors.resize(3);
-  EncodeList(list, bytes);
+  EncodeList(list, VehicleConfig(), bytes);
   EXPECT_TRUE(Decode<track_list_t>(bytes));
   EncodeText({}, "name", std::string("a\0b", 3) + std::string(3'000'000, 'x'), bytes);
   EXPECT_TRUE(Decode<text_t>(bytes));

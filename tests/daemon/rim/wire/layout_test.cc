@@ -20,6 +20,7 @@
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
+#include "v2vouch/object_list_t.hpp"
 #include "v2vouch/obu_status_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/text_t.hpp"
@@ -94,8 +95,9 @@ TEST(LayoutTable, EqualsTheLcmFilesFieldByField) {
        {&LayoutOf<bsm_t>(), &LayoutOf<bsm_verdict_t>(), &LayoutOf<truth_bsm_t>(),
         &LayoutOf<calibration_t>(), &LayoutOf<camera_detections_t>(), &LayoutOf<camera_image_t>(),
         &LayoutOf<daemon_status_t>(), &LayoutOf<ego_motion_t>(), &LayoutOf<gnss_fix_t>(),
-        &LayoutOf<misbehavior_report_t>(), &LayoutOf<obu_status_t>(), &LayoutOf<radar_scan_t>(),
-        &LayoutOf<text_t>(), &LayoutOf<track_list_t>(), &LayoutOf<truth_list_t>()}) {
+        &LayoutOf<misbehavior_report_t>(), &LayoutOf<object_list_t>(), &LayoutOf<obu_status_t>(),
+        &LayoutOf<radar_scan_t>(), &LayoutOf<text_t>(), &LayoutOf<track_list_t>(),
+        &LayoutOf<truth_list_t>()}) {
     EXPECT_GT(layout->max_bytes, layout->min_bytes + 8) << layout->name;
     Describe(*layout, table);
   }

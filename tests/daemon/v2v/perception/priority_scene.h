@@ -27,9 +27,7 @@ struct Car {
   bool is_part = false;      // No more than a part of it shows.
   // What a tracker would know of it.
   Timestamp start{};
-  int radar_hits = 0;
-  int camera_hits = 0;
-  std::optional<Timestamp> last_radar{}, last_camera{};
+  SensorSupport support{};
 };
 
 // An ego that stands at the origin of L and O looking east, with made-up LOCAL tracks (truth plus
@@ -89,14 +87,10 @@ class Scene {
     if (screen) occluders.push_back(*screen);
     for (Car& car : cars) {
       if (!car.is_seen && !car.is_coasting) continue;
-      if (car.radar_hits == 0) car.start = now;
+      if (car.support.hits() == 0) car.start = now;
       if (car.is_seen) {
-        ++car.radar_hits;
-        car.last_radar = now;
-        if (frames % 2 == 0) {
-          ++car.camera_hits;
-          car.last_camera = now;
-        }
+        car.support.Add({SensorKind::kRadar, 0}, now);
+        if (frames % 2 == 0) car.support.Add({SensorKind::kCamera, 0}, now);
       }
       LocalTrack track;
       track.id = car.local_id;
@@ -107,11 +101,8 @@ class Scene {
       track.state_O.covariance = StateVector(0.02, 0.02, 2e-4, 0.02, 1e-3, 0.05).asDiagonal();
       track.extent = {4.5, 1.8, 0.1, 0.1};
       track.existence = 0.99;
-      track.is_confirmed = car.radar_hits >= 2;
-      track.last_radar = car.last_radar;
-      track.last_camera = car.last_camera;
-      track.radar_hits = car.radar_hits;
-      track.camera_hits = car.camera_hits;
+      track.is_confirmed = car.support.hits(SensorKind::kRadar) >= 2;
+      track.support = car.support;
       frame.tracks.push_back(track);
       if (!car.is_seen) continue;
       frame.updates.push_back({car.local_id, Radar(car, track.extent)});
