@@ -21,6 +21,7 @@
 #include "daemon/rim/engine/engine.h"
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/socket_figures.h"
+#include "daemon/rim/lcm_packets/packet_fault.h"
 
 namespace v2vouch {
 namespace {
@@ -33,6 +34,16 @@ constexpr std::chrono::seconds kHousekeeping{1};
 constexpr milliseconds kStatusAtLatest{1100};  // Where no message comes.
 constexpr int kMostRefusalLines = 20;          // Per second.
 constexpr milliseconds kSuspended{500};        // Between two turns of the loop.
+
+// In the place of a channel, for what never became a message.
+constexpr std::string_view kBusName = "(bus)";
+constexpr std::string_view kV2vBusName = "(v2v bus)";
+
+// What is known of a bus already.
+struct BusReport {
+  lcm_packets::PacketCounts refused{};
+  std::int64_t rejoins = 0;
+};
 
 // Arrival on a clock that is never set.
 Timestamp ArrivalTime(Clock::time_point at) {
@@ -170,6 +181,7 @@ class Daemon {
     LogNotices();
     if (now - last_housekeeping_ >= kHousekeeping) {
       last_housekeeping_ = now;
+      TakeDropped();
       RefreshFigures();
       LogRefusals();
       LogMounts();
@@ -208,7 +220,36 @@ class Daemon {
     };
     note(NoticeKind::kForeignOutputs, foreign_.count(), foreign_before_);
     note(NoticeKind::kRadioFlood, queue_.bsm_drops(), bsm_drops_before_);
+    note(NoticeKind::kBadDatagrams, bad_datagrams_, bad_datagrams_before_);
     return notices;
+  }
+
+  // What the receive paths threw away before there was a message.
+  void TakeDropped() {
+    TakeDropped(*own_bus_, kBusName, own_report_);
+    if (v2v_bus_) TakeDropped(*v2v_bus_, kV2vBusName, v2v_report_);
+  }
+
+  void TakeDropped(const Receiver& bus, std::string_view name, BusReport& before) {
+    const lcm_packets::PacketCounts counts = bus.refused();
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const std::uint64_t more = counts[i] - before.refused[i];
+      if (more == 0) continue;
+      const Refusal refusal = lcm_packets::RefusalOf(static_cast<lcm_packets::PacketFault>(i));
+      engine_.OnDropped(name, refusal, more);
+      // Copies are harmless, and strangers are kept out as was asked for.
+      const bool is_expected =
+          refusal == Reason::kPacketDuplicate || refusal == Reason::kPacketSource;
+      if (!is_expected) bad_datagrams_ += static_cast<std::int64_t>(more);
+    }
+    before.refused = counts;
+    if (const std::int64_t rejoins = bus.rejoins(); rejoins != before.rejoins) {
+      spdlog::warn(
+          "event=multicast_rejoined bus=\"{}\" total={} hint=\"the interface had gone or lost its "
+          "address\"",
+          name, rejoins);
+      before.rejoins = rejoins;
+    }
   }
 
   void RefreshFigures() {
@@ -306,6 +347,7 @@ class Daemon {
   }
 
   DaemonSummary Summary() {
+    TakeDropped();
     summary_.accepted = engine_.accepted();
     summary_.withheld_lists = engine_.withheld();
     summary_.queue_drops_own = queue_.own_drops();
@@ -338,6 +380,10 @@ class Daemon {
   ForeignOutputs foreign_;
   std::int64_t foreign_before_ = 0;
   std::int64_t bsm_drops_before_ = 0;
+  BusReport own_report_;
+  BusReport v2v_report_;
+  std::int64_t bad_datagrams_ = 0;
+  std::int64_t bad_datagrams_before_ = 0;
   std::vector<int> ports_;  // That we receive on.
   std::vector<bool> moved_;
   int stale_round_ = 0;

@@ -76,6 +76,11 @@ class Engine {
   /// A message refused on its way here, e.g. a picture that gave no detections.
   void OnRefused(std::string_view channel, const Refusal& refusal, Timestamp received);
 
+  /// Refused before there was a message: datagrams of the bus `channel`.
+  void OnDropped(std::string_view channel, const Refusal& refusal, std::uint64_t count) {
+    Refuse(channel, refusal, count);
+  }
+
   /// Copies of the lists predicted by `silence` past the newest frame, marked stale; in no digest.
   /// Nothing before the first frame.
   void PublishStale(Duration silence, Outbox& outbox);
