@@ -1,50 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/rim/net/membership.h"
 
-#include <ifaddrs.h>
-#include <net/if.h>
+#include <linux/netlink.h>
+#include <linux/rtnetlink.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <string>
 
 namespace v2vouch::net {
 namespace {
 
-// The own address that the kernel would send to the group from; 0 where there is no route.
-std::uint32_t AddressTowards(std::uint32_t group) {
-  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (probe < 0) return 0;
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(9);  // Nothing is sent.
-  to.sin_addr.s_addr = group;
-  sockaddr_in own{};
-  socklen_t size = sizeof own;
-  const bool has_route = connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 &&
-                         getsockname(probe, reinterpret_cast<sockaddr*>(&own), &size) == 0;
-  close(probe);
-  return has_route ? own.sin_addr.s_addr : 0;
-}
-
-// Index of the interface that the routes name for the group; 0 where there is none.
+// Index of the interface that the routes name for the group; 0 where there is none. The kernel is
+// asked (RTM_GETROUTE): an own address would not tell, since on `lo` multicast has none.
 int DeviceTowards(std::uint32_t group) {
-  const std::uint32_t address = AddressTowards(group);
-  ifaddrs* list = nullptr;
-  if (address == 0 || getifaddrs(&list) != 0) return 0;
-  int device = 0;
-  for (const ifaddrs* each = list; each != nullptr && device == 0; each = each->ifa_next) {
-    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
-    if (reinterpret_cast<const sockaddr_in*>(each->ifa_addr)->sin_addr.s_addr != address) continue;
-    device = static_cast<int>(if_nametoindex(each->ifa_name));
+  struct {
+    nlmsghdr header{};
+    rtmsg route{};
+    rtattr attribute{};
+    std::uint32_t address = 0;
+  } request;
+  request.header.nlmsg_len = sizeof request;
+  request.header.nlmsg_type = RTM_GETROUTE;
+  request.header.nlmsg_flags = NLM_F_REQUEST;
+  request.route.rtm_family = AF_INET;
+  request.route.rtm_dst_len = 32;
+  request.attribute.rta_type = RTA_DST;
+  request.attribute.rta_len = RTA_LENGTH(sizeof group);
+  request.address = group;
+  const int netlink = socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE);
+  if (netlink < 0) return 0;
+  alignas(nlmsghdr) std::array<char, 4096> answer{};
+  const bool is_asked = send(netlink, &request, sizeof request, 0) == sizeof request;
+  const ssize_t size = is_asked ? recv(netlink, answer.data(), answer.size(), 0) : -1;
+  close(netlink);
+  const auto* const header = reinterpret_cast<const nlmsghdr*>(answer.data());
+  if (size < static_cast<ssize_t>(sizeof(nlmsghdr)) || header->nlmsg_type != RTM_NEWROUTE ||
+      header->nlmsg_len > static_cast<std::size_t>(size)) {
+    return 0;
   }
-  freeifaddrs(list);
-  return device;
+  const auto* const route = reinterpret_cast<const rtmsg*>(NLMSG_DATA(header));
+  int left = static_cast<int>(RTM_PAYLOAD(header));
+  for (const rtattr* each = RTM_RTA(route); RTA_OK(each, left); each = RTA_NEXT(each, left)) {
+    if (each->rta_type != RTA_OIF) continue;
+    int device = 0;
+    std::memcpy(&device, RTA_DATA(each), sizeof device);
+    return device;
+  }
+  return 0;
 }
 
 // Whether the interface listens to the group. Where the table cannot be read it is taken to.

@@ -66,12 +66,19 @@ bool SourceFilter::Parse(const std::vector<std::string>& entries, SourceFilter& 
 
 bool SourceFilter::Allows(const Source& source) const {
   if (networks_.empty()) return true;
+  // 0.0.0.0 is this host: so it sends to a group that is routed to `lo`. From outside the kernel
+  // takes no such datagram.
+  std::array<std::uint8_t, 16> address = source.address;
+  if (source.is_ipv4() && source.ipv4() == 0) {
+    address[12] = 127;
+    address[15] = 1;
+  }
   return std::ranges::any_of(networks_, [&](const Network& network) {
     for (int bit = 0; bit < network.bits; bit += 8) {
       const auto at = static_cast<std::size_t>(bit / 8);
       const int left = std::min(8, network.bits - bit);
       const auto mask = static_cast<std::uint8_t>(0xFF00U >> static_cast<unsigned>(left));
-      if (((source.address[at] ^ network.address[at]) & mask) != 0) return false;
+      if (((address[at] ^ network.address[at]) & mask) != 0) return false;
     }
     return true;
   });

@@ -43,6 +43,16 @@ TEST(SourceFilter, TakesAddressesAndNetworks) {
   EXPECT_FALSE(filter.Allows(At("fd12::9")));
 }
 
+// A host's own messages to a group routed to `lo` have no address.
+TEST(SourceFilter, NoAddressIsThisHost) {
+  SourceFilter filter;
+  std::string error;
+  ASSERT_TRUE(SourceFilter::Parse({"127.0.0.1"}, filter, error));
+  EXPECT_TRUE(filter.Allows(At("0.0.0.0")));
+  ASSERT_TRUE(SourceFilter::Parse({"10.0.0.0/8"}, filter, error));
+  EXPECT_FALSE(filter.Allows(At("0.0.0.0")));
+}
+
 TEST(SourceFilter, WhatIsNoAddressIsNamed) {
   SourceFilter filter;
   for (const char* bad : {"", "localhost", "1.2.3", "1.2.3.4/33", "1.2.3.4/", "1.2.3.4/x",
