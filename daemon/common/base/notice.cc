@@ -30,10 +30,6 @@ constexpr std::array<Words, kNoticeKindCount> kWords = {{
      "them gets both"},
     {"radio_flood",
      "more BSMs come than can be taken in; the oldest are dropped, own sensors are not"},
-    {"bad_datagrams",
-     "something on the LCM port is no LCM, or fragments get lost: see refusal_details of "
-     "\"(bus)\"; "
-     "allow senders with from= in the LCM URL, enlarge the receive buffer"},
     {"height_offset",
      "set the GNSS receiver to height above the ellipsoid, not sea level; senders may do it wrong, "
      "too"},

@@ -27,9 +27,8 @@ enum class NoticeKind : std::uint8_t {
   kYawRateSuspect,   ///< Doppler of the standing world shows another yaw rate, by [deg/s].
   kForeignOutputs,   ///< Somebody else publishes on our output channels [messages in a second].
   kRadioFlood,       ///< BSMs dropped by our full queue [in a second].
-  kBadDatagrams,  ///< Datagrams refused that are no LCM message, and half messages [in a second].
-  kHeightOffset,  ///< All heights differ from the ego's by a constant, which is taken out [m].
-  kHeightsApart,  ///< All senders tell another height: taken for another level [m].
+  kHeightOffset,     ///< All heights differ from the ego's by a constant, which is taken out [m].
+  kHeightsApart,     ///< All senders tell another height: taken for another level [m].
   kCount
 };
 

@@ -19,13 +19,6 @@ enum class Reason : std::uint8_t {
   kTrailingBytes,  ///< The message ends before the buffer does.
   kBadString,
   kDecodeFailed,
-  // Below the message: a datagram of the LCM socket that is no part of one.
-  kPacketMalformed,    ///< A header that cannot be.
-  kPacketTooLarge,     ///< Announces more than a message may have.
-  kPacketContradicts,  ///< Disagrees with the other fragments of its message.
-  kPacketDuplicate,    ///< A fragment that is here already.
-  kPacketSource,       ///< From an address that is not allowed.
-  kMessageIncomplete,  ///< Fragments without the rest of their message.
   // Content: well-formed, but the values cannot be.
   kNotFinite,
   kOutOfRange,

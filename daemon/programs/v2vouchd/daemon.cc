@@ -36,14 +36,8 @@ constexpr int kMostRefusalLines = 20;          // Per second.
 constexpr milliseconds kSuspended{500};        // Between two turns of the loop.
 
 // In the place of a channel, for what never became a message.
-constexpr std::string_view kBusName = "(bus)";
-constexpr std::string_view kV2vBusName = "(v2v bus)";
-
-// What is known of a bus already.
-struct BusReport {
-  lcm_packets::PacketCounts refused{};
-  std::int64_t rejoins = 0;
-};
+const std::string kBusName = "(bus)";
+const std::string kV2vBusName = "(v2v bus)";
 
 // Arrival on a clock that is never set.
 Timestamp ArrivalTime(Clock::time_point at) {
@@ -220,36 +214,41 @@ class Daemon {
     };
     note(NoticeKind::kForeignOutputs, foreign_.count(), foreign_before_);
     note(NoticeKind::kRadioFlood, queue_.bsm_drops(), bsm_drops_before_);
-    note(NoticeKind::kBadDatagrams, bad_datagrams_, bad_datagrams_before_);
     return notices;
   }
 
   // What the receive paths threw away before there was a message.
   void TakeDropped() {
-    TakeDropped(*own_bus_, kBusName, own_report_);
-    if (v2v_bus_) TakeDropped(*v2v_bus_, kV2vBusName, v2v_report_);
+    std::vector<wire::DroppedDatagrams> before = std::move(dropped_);
+    dropped_.clear();
+    TakeDropped(*own_bus_, kBusName, own_rejoins_);
+    if (v2v_bus_) TakeDropped(*v2v_bus_, kV2vBusName, v2v_rejoins_);
+    for (const wire::DroppedDatagrams& now : dropped_) {
+      std::uint64_t told = 0;
+      for (const wire::DroppedDatagrams& then : before) {
+        if (then.bus == now.bus && then.reason == now.reason && then.field == now.field) {
+          told = then.count;
+        }
+      }
+      if (now.count == told) continue;
+      spdlog::warn("event=refused channel={} reason={} field=\"{}\" count={} total={}", now.bus,
+                   now.reason, now.field, now.count - told, now.count);
+    }
   }
 
-  void TakeDropped(const Receiver& bus, std::string_view name, BusReport& before) {
+  void TakeDropped(const Receiver& bus, const std::string& name, std::int64_t& rejoins) {
     const lcm_packets::PacketCounts counts = bus.refused();
     for (std::size_t i = 0; i < counts.size(); ++i) {
-      const std::uint64_t more = counts[i] - before.refused[i];
-      if (more == 0) continue;
-      const Refusal refusal = lcm_packets::RefusalOf(static_cast<lcm_packets::PacketFault>(i));
-      engine_.OnDropped(name, refusal, more);
-      // Copies are harmless, and strangers are kept out as was asked for.
-      const bool is_expected =
-          refusal == Reason::kPacketDuplicate || refusal == Reason::kPacketSource;
-      if (!is_expected) bad_datagrams_ += static_cast<std::int64_t>(more);
+      if (counts[i] == 0) continue;
+      const auto fault = lcm_packets::NameOf(static_cast<lcm_packets::PacketFault>(i));
+      dropped_.push_back({name, std::string(fault.reason), std::string(fault.field), counts[i]});
     }
-    before.refused = counts;
-    if (const std::int64_t rejoins = bus.rejoins(); rejoins != before.rejoins) {
-      spdlog::warn(
-          "event=multicast_rejoined bus=\"{}\" total={} hint=\"the interface had gone or lost its "
-          "address\"",
-          name, rejoins);
-      before.rejoins = rejoins;
-    }
+    if (bus.rejoins() == rejoins) return;
+    rejoins = bus.rejoins();
+    spdlog::warn(
+        "event=multicast_rejoined bus=\"{}\" total={} hint=\"the interface had gone or lost its "
+        "address\"",
+        name, rejoins);
   }
 
   void RefreshFigures() {
@@ -261,7 +260,8 @@ class Daemon {
                              .receive_buffer_bytes = sockets.receive_buffer_bytes,
                              .latencies = {queue_wait_.Report(), step_.Report(),
                                            input_to_list_.Report(), image_to_boxes_.Report()},
-                             .notices = Notices()});
+                             .notices = Notices(),
+                             .dropped = dropped_});
   }
 
   // One line per channel, reason and field and second at most, and not too many in one second; the
@@ -348,6 +348,7 @@ class Daemon {
 
   DaemonSummary Summary() {
     TakeDropped();
+    summary_.dropped = dropped_;
     summary_.accepted = engine_.accepted();
     summary_.withheld_lists = engine_.withheld();
     summary_.queue_drops_own = queue_.own_drops();
@@ -380,10 +381,9 @@ class Daemon {
   ForeignOutputs foreign_;
   std::int64_t foreign_before_ = 0;
   std::int64_t bsm_drops_before_ = 0;
-  BusReport own_report_;
-  BusReport v2v_report_;
-  std::int64_t bad_datagrams_ = 0;
-  std::int64_t bad_datagrams_before_ = 0;
+  std::vector<wire::DroppedDatagrams> dropped_;  // Since start.
+  std::int64_t own_rejoins_ = 0;
+  std::int64_t v2v_rejoins_ = 0;
   std::vector<int> ports_;  // That we receive on.
   std::vector<bool> moved_;
   int stale_round_ = 0;

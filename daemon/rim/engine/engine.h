@@ -54,6 +54,7 @@ struct ShellFigures {
   std::int64_t receive_buffer_bytes = -1;
   std::vector<wire::StageLatency> latencies;
   std::vector<Notice> notices;
+  std::vector<wire::DroppedDatagrams> dropped;
 };
 
 /// Bytes in, bytes out: decode, perception, encode, with every refusal counted. The daemon and the
@@ -75,11 +76,6 @@ class Engine {
                     Timestamp received, Outbox& outbox);
   /// A message refused on its way here, e.g. a picture that gave no detections.
   void OnRefused(std::string_view channel, const Refusal& refusal, Timestamp received);
-
-  /// Refused before there was a message: datagrams of the bus `channel`.
-  void OnDropped(std::string_view channel, const Refusal& refusal, std::uint64_t count) {
-    Refuse(channel, refusal, count);
-  }
 
   /// Copies of the lists predicted by `silence` past the newest frame, marked stale; in no digest.
   /// Nothing before the first frame.

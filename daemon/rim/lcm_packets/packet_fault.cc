@@ -3,48 +3,48 @@
 
 namespace v2vouch::lcm_packets {
 
-Refusal RefusalOf(PacketFault fault) {
+FaultName NameOf(PacketFault fault) {
   switch (fault) {
     case PacketFault::kDatagram:
-      return {Reason::kPacketMalformed, "datagram size"};
+      return {"packet_malformed", "datagram size"};
     case PacketFault::kMagic:
-      return {Reason::kPacketMalformed, "magic"};
+      return {"packet_malformed", "magic"};
     case PacketFault::kChannel:
-      return {Reason::kPacketMalformed, "channel"};
+      return {"packet_malformed", "channel"};
     case PacketFault::kMessageSize:
-      return {Reason::kPacketMalformed, "msg_size"};
+      return {"packet_malformed", "msg_size"};
     case PacketFault::kTooLarge:
-      return {Reason::kPacketTooLarge, "msg_size"};
+      return {"packet_too_large", "msg_size"};
     case PacketFault::kFragmentCount:
-      return {Reason::kPacketMalformed, "fragments_in_msg"};
+      return {"packet_malformed", "fragments_in_msg"};
     case PacketFault::kFragmentNumber:
-      return {Reason::kPacketMalformed, "fragment_no"};
+      return {"packet_malformed", "fragment_no"};
     case PacketFault::kFragmentOffset:
-      return {Reason::kPacketMalformed, "fragment_offset"};
+      return {"packet_malformed", "fragment_offset"};
     case PacketFault::kEmptyFragment:
-      return {Reason::kPacketMalformed, "empty fragment"};
+      return {"packet_malformed", "empty fragment"};
     case PacketFault::kOtherSize:
-      return {Reason::kPacketContradicts, "msg_size"};
+      return {"packet_contradicts", "msg_size"};
     case PacketFault::kOtherCount:
-      return {Reason::kPacketContradicts, "fragments_in_msg"};
+      return {"packet_contradicts", "fragments_in_msg"};
     case PacketFault::kOverlap:
-      return {Reason::kPacketContradicts, "fragment_offset overlaps"};
+      return {"packet_contradicts", "fragment_offset overlaps"};
     case PacketFault::kGap:
-      return {Reason::kPacketContradicts, "fragments leave a gap"};
+      return {"packet_contradicts", "fragments leave a gap"};
     case PacketFault::kDuplicate:
-      return {Reason::kPacketDuplicate, "fragment_no"};
+      return {"packet_duplicate", "fragment_no"};
     case PacketFault::kAfterTheMessage:
-      return {Reason::kPacketDuplicate, "msg_seqno"};
+      return {"packet_duplicate", "msg_seqno"};
     case PacketFault::kSource:
-      return {Reason::kPacketSource, "sender's address"};
+      return {"packet_source", "sender's address"};
     case PacketFault::kSilent:
-      return {Reason::kMessageIncomplete, "no further fragment"};
+      return {"message_incomplete", "no further fragment"};
     case PacketFault::kAge:
-      return {Reason::kMessageIncomplete, "fragments too slow"};
+      return {"message_incomplete", "fragments too slow"};
     case PacketFault::kRoom:
-      return {Reason::kMessageIncomplete, "no room"};
+      return {"message_incomplete", "no room"};
     case PacketFault::kMemory:
-      return {Reason::kMessageIncomplete, "no memory"};
+      return {"message_incomplete", "no memory"};
     case PacketFault::kNone:
     case PacketFault::kCount:
       break;

@@ -4,8 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-
-#include "daemon/common/base/reason.h"
+#include <string_view>
 
 namespace v2vouch::lcm_packets {
 
@@ -44,7 +43,11 @@ inline constexpr std::size_t kPacketFaultCount = static_cast<std::size_t>(Packet
 /// One counter per fault.
 using PacketCounts = std::array<std::uint64_t, kPacketFaultCount>;
 
-/// As it is counted and published: reason, and the header's field under LCM's own name.
-Refusal RefusalOf(PacketFault fault);
+/// As it is counted and published: a reason, and the header's field under LCM's own name.
+struct FaultName {
+  std::string_view reason;
+  std::string_view field;
+};
+FaultName NameOf(PacketFault fault);
 
 }  // namespace v2vouch::lcm_packets
