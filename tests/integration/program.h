@@ -20,6 +20,7 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void Signal(int signal) const;
+  [[nodiscard]] pid_t pid() const { return pid_; }
   [[nodiscard]] bool IsRunning();
   /// Exit code, 128 + signal where a signal ended it; nullopt when it runs on.
   std::optional<int> Wait(std::chrono::milliseconds timeout);

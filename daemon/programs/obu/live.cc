@@ -8,10 +8,10 @@
 #include <iostream>
 
 #include "daemon/obu/gateway/gateway.h"
-#include "daemon/obu/receive/udp_receiver.h"
 #include "daemon/rim/io/lcm_bus.h"
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/stop_signal.h"
+#include "daemon/rim/net/udp_receiver.h"
 
 namespace v2vouch::obu {
 namespace {
@@ -37,7 +37,13 @@ class Loop {
   bool Open() {
     for (const InputConfig& input : config_.inputs) {
       std::string error;
-      auto receiver = UdpReceiver::Open(input.bind, input.port, kReceiveBufferBytes, error);
+      auto receiver = net::UdpReceiver::Open({.address = input.bind,
+                                              .port = input.port,
+                                              .buffer_bytes = kReceiveBufferBytes,
+                                              .longest = kLongestDatagram,
+                                              .batch = 64,
+                                              .sources = {}},  // The gateway judges and counts.
+                                             error);
       if (!receiver) {
         Log(error);
         return false;
@@ -62,9 +68,10 @@ class Loop {
           std::clamp<std::int64_t>((due - before + 999) / 1000, 0, kLongestWait_ms));
       poll(waits_.data(), waits_.size(), wait_ms);
       for (std::size_t i = 0; i < receivers_.size(); ++i) {
-        receivers_[i]->Receive([&](const ReceivedDatagram& datagram) {
+        receivers_[i]->Receive([&](const net::Datagram& datagram) {
           const std::int64_t utime = datagram.utime != 0 ? datagram.utime : Now();
-          gateway_.OnDatagram({datagram.bytes, datagram.source, i, utime, datagram.is_cut}, out_);
+          const std::string source = datagram.source.Text();
+          gateway_.OnDatagram({datagram.bytes, source, i, utime, datagram.is_cut}, out_);
         });
       }
       const std::int64_t now = Now();
@@ -148,7 +155,7 @@ class Loop {
 
   GatewayConfig config_;
   Gateway gateway_;
-  std::vector<std::unique_ptr<UdpReceiver>> receivers_;
+  std::vector<std::unique_ptr<net::UdpReceiver>> receivers_;
   std::vector<pollfd> waits_;
   std::unique_ptr<LcmBus> bus_;
   std::vector<bsm_t> out_;

@@ -21,6 +21,7 @@
 #include "daemon/rim/engine/engine.h"
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/socket_figures.h"
+#include "daemon/rim/lcm_packets/packet_fault.h"
 
 namespace v2vouch {
 namespace {
@@ -33,6 +34,10 @@ constexpr std::chrono::seconds kHousekeeping{1};
 constexpr milliseconds kStatusAtLatest{1100};  // Where no message comes.
 constexpr int kMostRefusalLines = 20;          // Per second.
 constexpr milliseconds kSuspended{500};        // Between two turns of the loop.
+
+// In the place of a channel, for what never became a message.
+const std::string kBusName = "(bus)";
+const std::string kV2vBusName = "(v2v bus)";
 
 // Arrival on a clock that is never set.
 Timestamp ArrivalTime(Clock::time_point at) {
@@ -170,6 +175,7 @@ class Daemon {
     LogNotices();
     if (now - last_housekeeping_ >= kHousekeeping) {
       last_housekeeping_ = now;
+      TakeDropped();
       RefreshFigures();
       LogRefusals();
       LogMounts();
@@ -211,6 +217,40 @@ class Daemon {
     return notices;
   }
 
+  // What the receive paths threw away before there was a message.
+  void TakeDropped() {
+    std::vector<wire::DroppedDatagrams> before = std::move(dropped_);
+    dropped_.clear();
+    TakeDropped(*own_bus_, kBusName, own_rejoins_);
+    if (v2v_bus_) TakeDropped(*v2v_bus_, kV2vBusName, v2v_rejoins_);
+    for (const wire::DroppedDatagrams& now : dropped_) {
+      std::uint64_t told = 0;
+      for (const wire::DroppedDatagrams& then : before) {
+        if (then.bus == now.bus && then.reason == now.reason && then.field == now.field) {
+          told = then.count;
+        }
+      }
+      if (now.count == told) continue;
+      spdlog::warn("event=refused channel={} reason={} field=\"{}\" count={} total={}", now.bus,
+                   now.reason, now.field, now.count - told, now.count);
+    }
+  }
+
+  void TakeDropped(const Receiver& bus, const std::string& name, std::int64_t& rejoins) {
+    const lcm_packets::PacketCounts counts = bus.refused();
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      if (counts[i] == 0) continue;
+      const auto fault = lcm_packets::NameOf(static_cast<lcm_packets::PacketFault>(i));
+      dropped_.push_back({name, std::string(fault.reason), std::string(fault.field), counts[i]});
+    }
+    if (bus.rejoins() == rejoins) return;
+    rejoins = bus.rejoins();
+    spdlog::warn(
+        "event=multicast_rejoined bus=\"{}\" total={} hint=\"the interface had gone or lost its "
+        "address\"",
+        name, rejoins);
+  }
+
   void RefreshFigures() {
     const SocketFigures sockets = ReadSocketFigures(ports_);
     engine_.SetShellFigures({.queue_drops_own = queue_.own_drops(),
@@ -220,7 +260,8 @@ class Daemon {
                              .receive_buffer_bytes = sockets.receive_buffer_bytes,
                              .latencies = {queue_wait_.Report(), step_.Report(),
                                            input_to_list_.Report(), image_to_boxes_.Report()},
-                             .notices = Notices()});
+                             .notices = Notices(),
+                             .dropped = dropped_});
   }
 
   // One line per channel, reason and field and second at most, and not too many in one second; the
@@ -306,6 +347,8 @@ class Daemon {
   }
 
   DaemonSummary Summary() {
+    TakeDropped();
+    summary_.dropped = dropped_;
     summary_.accepted = engine_.accepted();
     summary_.withheld_lists = engine_.withheld();
     summary_.queue_drops_own = queue_.own_drops();
@@ -338,6 +381,9 @@ class Daemon {
   ForeignOutputs foreign_;
   std::int64_t foreign_before_ = 0;
   std::int64_t bsm_drops_before_ = 0;
+  std::vector<wire::DroppedDatagrams> dropped_;  // Since start.
+  std::int64_t own_rejoins_ = 0;
+  std::int64_t v2v_rejoins_ = 0;
   std::vector<int> ports_;  // That we receive on.
   std::vector<bool> moved_;
   int stale_round_ = 0;

@@ -3,9 +3,11 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "daemon/programs/v2vouchd/detect_thread.h"
 #include "daemon/rim/engine/daemon_config.h"
+#include "daemon/rim/wire/status.h"
 
 namespace v2vouch {
 
@@ -18,6 +20,7 @@ struct DaemonSummary {
   std::int64_t queue_drops_own = 0;
   std::int64_t queue_drops_bsm = 0;
   ReasonCounts refused{};
+  std::vector<wire::DroppedDatagrams> dropped;
   std::string digest_local;
   std::string digest_priority;
 };

@@ -57,6 +57,10 @@ void PrintSummary(const v2vouch::DaemonSummary& summary) {
     spdlog::info("event=refused_in_all reason={} total={}",
                  v2vouch::ReasonName(static_cast<v2vouch::Reason>(i)), summary.refused[i]);
   }
+  for (const v2vouch::wire::DroppedDatagrams& dropped : summary.dropped) {
+    spdlog::info("event=refused_in_all channel={} reason={} field=\"{}\" total={}", dropped.bus,
+                 dropped.reason, dropped.field, dropped.count);
+  }
 }
 
 struct Options {

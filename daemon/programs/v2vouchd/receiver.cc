@@ -42,7 +42,8 @@ bool Receiver::Open() {
 }
 
 void Receiver::Run() {
-  if (priority_ == Priority::kLow) LowerThreadPriority();  // And that of liblcm's own thread.
+  if (priority_ == Priority::kLow)
+    LowerThreadPriority();  // And that of liblcm's own thread, where it has one.
   for (milliseconds pause = kFirstPause; !must_stop_ && !Open();
        pause = std::min(2 * pause, kLongestPause)) {
     ++failures_;

@@ -33,6 +33,12 @@ class Receiver {
   [[nodiscard]] bool is_open() const { return is_open_; }
   /// Attempts to open that failed so far.
   [[nodiscard]] int failures() const { return failures_; }
+  /// What was refused below the message so far.
+  [[nodiscard]] lcm_packets::PacketCounts refused() const {
+    return is_open_ ? bus_->refused() : lcm_packets::PacketCounts{};
+  }
+  /// How often the multicast group had to be joined again.
+  [[nodiscard]] std::int64_t rejoins() const { return is_open_ ? bus_->rejoins() : 0; }
 
  private:
   void Run();

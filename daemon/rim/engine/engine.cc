@@ -204,6 +204,7 @@ void Engine::PublishStatus(Outbox& outbox) {
   status_.refusals[static_cast<std::size_t>(Reason::kImageReplaced)] +=
       static_cast<std::uint64_t>(figures_.images_replaced);
   status_.refusal_details = refusal_table_.rows();
+  status_.dropped = figures_.dropped;
   status_.queue_drops_own = figures_.queue_drops_own;
   status_.queue_drops_bsm = figures_.queue_drops_bsm;
   status_.kernel_drops = figures_.kernel_drops;

@@ -54,6 +54,7 @@ struct ShellFigures {
   std::int64_t receive_buffer_bytes = -1;
   std::vector<wire::StageLatency> latencies;
   std::vector<Notice> notices;
+  std::vector<wire::DroppedDatagrams> dropped;
 };
 
 /// Bytes in, bytes out: decode, perception, encode, with every refusal counted. The daemon and the

@@ -3,11 +3,14 @@
 
 #include <lcm/lcm.h>
 
+#include <chrono>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/io/lcm_url.h"
+#include "daemon/rim/io/udpm_receiver.h"
 
 namespace v2vouch {
 namespace {
@@ -51,17 +54,26 @@ void OnReceive(const lcm_recv_buf_t* buffer, const char*, void* user) {
 }  // namespace
 
 std::unique_ptr<LcmBus> LcmBus::Open(const std::string& url) {
-  if (!LcmUrlProblems(EffectiveLcmUrl(url)).empty()) return nullptr;
-  lcm_t* lcm = lcm_create(url.empty() ? nullptr : url.c_str());
+  const std::string effective = EffectiveLcmUrl(url);
+  if (!LcmUrlProblems(effective).empty()) return nullptr;
+  const std::string liblcm_url = UrlForLiblcm(effective);
+  // Opens no receiving socket before its first subscription.
+  lcm_t* lcm = lcm_create(liblcm_url.empty() ? nullptr : liblcm_url.c_str());
   if (lcm == nullptr) return nullptr;
-  return std::unique_ptr<LcmBus>(new LcmBus(lcm));
+  return std::unique_ptr<LcmBus>(new LcmBus(lcm, effective));
 }
 
-LcmBus::LcmBus(lcm_t* lcm) : lcm_(lcm) {}
+LcmBus::LcmBus(lcm_t* lcm, std::string url) : lcm_(lcm), url_(std::move(url)) {}
 
 LcmBus::~LcmBus() { lcm_destroy(lcm_); }
 
 bool LcmBus::Subscribe(const std::string& channel, Handler handler) {
+  if (const auto own = OwnReceiverUrl(url_)) {
+    if (!receiver_) receiver_ = UdpmReceiver::Open(*own);
+    if (!receiver_) return false;
+    receiver_->Subscribe(channel, std::move(handler));
+    return true;
+  }
   auto subscription = std::make_unique<Subscription>(Subscription{std::move(handler)});
   lcm_subscription_t* taken =
       lcm_subscribe(lcm_, Escaped(channel).c_str(), OnReceive, subscription.get());
@@ -71,11 +83,28 @@ bool LcmBus::Subscribe(const std::string& channel, Handler handler) {
   return true;
 }
 
-bool LcmBus::Handle(int timeout_ms) { return lcm_handle_timeout(lcm_, timeout_ms) >= 0; }
+bool LcmBus::Handle(int timeout_ms) {
+  if (receiver_) {
+    receiver_->Handle(timeout_ms);
+    return true;
+  }
+  // liblcm would open its own receiving socket here.
+  if (OwnReceiverUrl(url_)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(timeout_ms));
+    return true;
+  }
+  return lcm_handle_timeout(lcm_, timeout_ms) >= 0;
+}
 
 bool LcmBus::Publish(const std::string& channel, std::span<const std::uint8_t> bytes) {
   return lcm_publish(lcm_, channel.c_str(), bytes.data(),
                      static_cast<unsigned int>(bytes.size())) == 0;
 }
+
+lcm_packets::PacketCounts LcmBus::refused() const {
+  return receiver_ ? receiver_->refused() : lcm_packets::PacketCounts{};
+}
+
+std::int64_t LcmBus::rejoins() const { return receiver_ ? receiver_->rejoins() : 0; }
 
 }  // namespace v2vouch

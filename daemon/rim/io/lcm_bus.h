@@ -9,13 +9,20 @@
 #include <vector>
 
 #include "daemon/common/base/time.h"
+#include "daemon/rim/lcm_packets/packet_fault.h"
 
 typedef struct _lcm_t lcm_t;
 
 namespace v2vouch {
 
-/// One LCM instance. Receives bytes only: what they mean is judged elsewhere. Publishing is allowed
-/// from one thread while another handles.
+class UdpmReceiver;
+
+/// One LCM bus. Receives bytes only: what they mean is judged elsewhere. Publishing is allowed from
+/// one thread while another handles.
+///
+/// A udpm:// URL is received by our own path (UdpmReceiver), which no datagram can harm, or with
+/// `receiver=liblcm` in the URL by liblcm. Other URLs (memq://, file://, tcpq://, mpudpm://) are
+/// liblcm's, and liblcm publishes to all.
 class LcmBus {
  public:
   /// `size` may be more than any message can have (a bare header makes liblcm 1.3.1 report nearly
@@ -32,20 +39,29 @@ class LcmBus {
   LcmBus(const LcmBus&) = delete;
   LcmBus& operator=(const LcmBus&) = delete;
 
-  /// Takes exactly this channel (LCM reads names as regular expressions). The handler must not
-  /// throw and runs in Handle(). @return false when LCM refuses.
+  /// Takes exactly this channel (liblcm reads names as regular expressions). The handler must not
+  /// throw and runs in Handle(). @return false when it cannot be, e.g. for want of a route.
   bool Subscribe(const std::string& channel, Handler handler);
 
-  /// Waits up to `timeout_ms` for messages and handles one. @return false when the bus is broken.
+  /// Waits up to `timeout_ms` for messages and handles one, or the few that wait. @return false
+  /// when the bus is broken.
   bool Handle(int timeout_ms);
 
   bool Publish(const std::string& channel, std::span<const std::uint8_t> bytes);
 
+  /// What our own path refused below the message so far; from any thread. Nothing with liblcm,
+  /// which does not say.
+  [[nodiscard]] lcm_packets::PacketCounts refused() const;
+  /// How often the multicast group had to be joined again.
+  [[nodiscard]] std::int64_t rejoins() const;
+
   struct Subscription;  // Known to the callback only.
 
  private:
-  explicit LcmBus(lcm_t* lcm);
+  LcmBus(lcm_t* lcm, std::string url);
   lcm_t* lcm_;
+  std::string url_;
+  std::unique_ptr<UdpmReceiver> receiver_;  // From the first subscription on.
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
 };
 

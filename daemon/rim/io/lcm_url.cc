@@ -14,10 +14,15 @@
 #include <string_view>
 #include <utility>
 
+#include "daemon/rim/net/source.h"
+
 namespace v2vouch {
 namespace {
 
 constexpr int kDefaultPort = 7667;
+constexpr char kReceiver[] = "receiver";  // Our own options.
+constexpr char kFrom[] = "from";
+constexpr char kLiblcm[] = "liblcm";
 
 using Options = std::vector<std::pair<std::string, std::string>>;
 
@@ -54,6 +59,23 @@ std::optional<Parts> Split(const std::string& url) {
     rest.erase(0, end + 1);
   }
   return parts;
+}
+
+std::vector<std::string> AtCommas(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t from = 0; from <= text.size();) {
+    const auto to = std::min(text.find(',', from), text.size());
+    words.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  return words;
+}
+
+const std::string* Find(const Options& options, const std::string& wanted) {
+  for (const auto& [key, value] : options) {
+    if (key == wanted) return &value;
+  }
+  return nullptr;
 }
 
 class Checker {
@@ -100,6 +122,16 @@ class Checker {
   std::vector<std::string>& problems_;
 };
 
+void CheckSources(const Parts& parts, const std::string& value, Checker& check) {
+  net::SourceFilter filter;
+  std::string error;
+  if (!net::SourceFilter::Parse(AtCommas(value), filter, error)) check.Problem("from: " + error);
+  if (const std::string* receiver = Find(parts.options, kReceiver);
+      receiver != nullptr && *receiver == kLiblcm) {
+    check.Problem("from: liblcm takes everybody's messages; receiver=own can choose");
+  }
+}
+
 void CheckUdp(const Parts& parts, Checker& check) {
   const std::string example = parts.provider + "://239.255.76.67:7667?ttl=0";
   if (!parts.network.empty()) {  // Else LCM's own group and port.
@@ -111,12 +143,20 @@ void CheckUdp(const Parts& parts, Checker& check) {
     }
   }
   constexpr std::int64_t kMostBytes = 1 << 30;
-  check.EachOption(parts.options, "ttl, recv_buf_size",
+  const bool has_ours = parts.provider == "udpm";
+  check.EachOption(parts.options,
+                   has_ours ? "ttl, recv_buf_size, receiver, from" : "ttl, recv_buf_size",
                    [&](const std::string& key, const std::string& value) {
                      if (key == "ttl") {
                        check.Integer(key, value, 0, 255);
                      } else if (key == "recv_buf_size") {
                        check.Integer(key, value, 1, kMostBytes);
+                     } else if (has_ours && key == kReceiver) {
+                       if (value != "own" && value != kLiblcm) {
+                         check.Problem("receiver = \"" + value + "\": must be own or liblcm");
+                       }
+                     } else if (has_ours && key == kFrom) {
+                       CheckSources(parts, value, check);
                      } else {
                        return false;
                      }
@@ -192,6 +232,35 @@ std::string EffectiveLcmUrl(const std::string& url) {
   if (!url.empty()) return url;
   const char* environment = std::getenv("LCM_DEFAULT_URL");
   return environment != nullptr ? environment : "";
+}
+
+std::string UrlForLiblcm(const std::string& url) {
+  const auto parts = Split(url);
+  if (!parts || parts->provider != "udpm") return url;
+  std::string stripped = parts->provider + "://" + parts->network;
+  char joint = '?';
+  for (const auto& [key, value] : parts->options) {
+    if (key == kReceiver || key == kFrom) continue;
+    stripped += joint + key + "=" + value;
+    joint = '&';
+  }
+  return stripped;
+}
+
+std::optional<UdpmUrl> OwnReceiverUrl(const std::string& url) {
+  const auto parts = Split(url.empty() ? "udpm://" : url);
+  if (!parts || parts->provider != "udpm") return std::nullopt;
+  const std::string* receiver = Find(parts->options, kReceiver);
+  if (receiver != nullptr && *receiver == kLiblcm) return std::nullopt;
+  UdpmUrl own;
+  if (!parts->network.empty()) own.group = parts->network.substr(0, parts->network.rfind(':'));
+  own.port = LcmUdpPort(url);
+  if (const std::string* bytes = Find(parts->options, "recv_buf_size")) {
+    own.receive_buffer_bytes =
+        static_cast<int>(ToInteger(*bytes).value_or(own.receive_buffer_bytes));
+  }
+  if (const std::string* from = Find(parts->options, kFrom)) own.sources = AtCommas(*from);
+  return own;
 }
 
 int LcmUdpPort(const std::string& url) {

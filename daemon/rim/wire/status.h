@@ -35,6 +35,14 @@ struct RefusalDetail {
   }
 };
 
+/// Refused before there was a message, since start.
+struct DroppedDatagrams {
+  std::string bus;  ///< In the place of a channel.
+  std::string reason;
+  std::string field;
+  std::uint64_t count = 0;
+};
+
 struct MountStatus {
   std::string sensor;
   Timestamp stamp{};  ///< Timestamp{}: no window yet.
@@ -70,6 +78,7 @@ struct Status {
   std::vector<InputStatus> inputs;
   ReasonCounts refusals{};
   std::vector<RefusalDetail> refusal_details;
+  std::vector<DroppedDatagrams> dropped;  ///< Told among the refusals.
   std::int64_t queue_drops_own = 0;
   std::int64_t queue_drops_bsm = 0;
   std::int64_t kernel_drops = -1;

@@ -54,6 +54,26 @@ void PutInputs(const Status& status, daemon_status_t& to) {
   SetCount(to.num_inputs, to.inputs);
 }
 
+void PutDropped(const Status& status, daemon_status_t& to) {
+  for (const DroppedDatagrams& from : status.dropped) {
+    const auto same = std::ranges::find(to.refusals, from.reason, &count_t::name);
+    if (same != to.refusals.end()) {
+      same->count += static_cast<std::int64_t>(from.count);
+    } else {
+      count_t count{};
+      count.name = Name(from.reason);
+      count.count = static_cast<std::int64_t>(from.count);
+      to.refusals.push_back(count);
+    }
+    refusal_t detail{};
+    detail.channel = Name(from.bus);
+    detail.reason = Name(from.reason);
+    detail.field = Name(from.field);
+    detail.count = static_cast<std::int64_t>(from.count);
+    to.refusal_details.push_back(detail);
+  }
+}
+
 void PutRefusals(const Status& status, daemon_status_t& to) {
   for (std::size_t i = 0; i < kReasonCount; ++i) {
     if (status.refusals[i] == 0) continue;
@@ -62,7 +82,6 @@ void PutRefusals(const Status& status, daemon_status_t& to) {
     count.count = static_cast<std::int64_t>(status.refusals[i]);
     to.refusals.push_back(count);
   }
-  SetCount(to.num_refusals, to.refusals);
   for (const RefusalDetail& from : status.refusal_details) {
     refusal_t detail{};
     detail.channel = Name(from.channel);
@@ -71,6 +90,8 @@ void PutRefusals(const Status& status, daemon_status_t& to) {
     detail.count = static_cast<std::int64_t>(from.count);
     to.refusal_details.push_back(detail);
   }
+  PutDropped(status, to);
+  SetCount(to.num_refusals, to.refusals);
   SetCount(to.num_refusal_details, to.refusal_details);
 }
 

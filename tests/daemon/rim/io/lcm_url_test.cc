@@ -19,7 +19,9 @@ TEST(LcmUrl, WhatLcmUnderstandsIsGood) {
   for (const char* url :
        {"", "udpm://", "udpm://?ttl=1", "udpm://239.255.76.67:7667", "udpm://224.0.0.1:1?ttl=255",
         "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304", "mpudpm://239.255.76.67:7667",
-        "memq://", "tcpq://localhost:7700", "file:///tmp/new.lcm?mode=w"}) {
+        "udpm://?receiver=own", "udpm://?receiver=liblcm",
+        "udpm://239.255.76.67:7667?from=192.168.1.0/24,127.0.0.1&ttl=1", "memq://",
+        "tcpq://localhost:7700", "file:///tmp/new.lcm?mode=w"}) {
     EXPECT_THAT(LcmUrlProblems(url), IsEmpty()) << url;
   }
   const std::string log = testing::TempDir() + "/lcm_url_test.lcm";
@@ -49,6 +51,11 @@ TEST(LcmUrl, EachFaultIsNamed) {
   EXPECT_THAT(only("udpm://239.255.76.67:7667?recv_buf_size=4MB"), HasSubstr("recv_buf_size"));
   EXPECT_THAT(only("udpm://239.255.76.67:7667?recv_buffer=1"),
               HasSubstr("unknown option \"recv_buffer\"; known: ttl, recv_buf_size"));
+  EXPECT_THAT(only("udpm://?receiver=ours"), HasSubstr("must be own or liblcm"));
+  EXPECT_THAT(only("udpm://?from=vehicle"), HasSubstr("\"vehicle\" is no address"));
+  EXPECT_THAT(only("udpm://?from=10.0.0.1,,10.0.0.2"), HasSubstr("\"\" is no address"));
+  EXPECT_THAT(only("udpm://?receiver=liblcm&from=10.0.0.1"), HasSubstr("receiver=own can choose"));
+  EXPECT_THAT(only("mpudpm://?receiver=own"), HasSubstr("unknown option \"receiver\""));
   EXPECT_THAT(only("tcpq://localhost"), HasSubstr("has no port"));
   EXPECT_THAT(only("tcpq://:7700"), HasSubstr("names no host"));
   EXPECT_THAT(only("memq://x"), HasSubstr("takes no address"));
@@ -67,6 +74,32 @@ TEST(LcmUrl, AllFaultsAreNamedAtOnce) {
 TEST(LcmUrl, ABusOfAWrongUrlIsNotOpened) {
   EXPECT_EQ(LcmBus::Open("tcpq://"), nullptr);
   EXPECT_NE(LcmBus::Open("memq://"), nullptr);
+}
+
+TEST(LcmUrl, OurOwnOptionsAreKeptFromLiblcm) {
+  EXPECT_EQ(UrlForLiblcm(""), "");
+  EXPECT_EQ(UrlForLiblcm("udpm://239.255.76.67:7667"), "udpm://239.255.76.67:7667");
+  EXPECT_EQ(UrlForLiblcm("udpm://?receiver=own&ttl=1&from=127.0.0.1&recv_buf_size=9"),
+            "udpm://?ttl=1&recv_buf_size=9");
+  EXPECT_EQ(UrlForLiblcm("memq://"), "memq://");
+}
+
+TEST(LcmUrl, UdpIsReceivedByOurselvesUnlessToldOtherwise) {
+  for (const char* url : {"memq://", "mpudpm://239.255.76.67:7667", "udpm://?receiver=liblcm"}) {
+    EXPECT_FALSE(OwnReceiverUrl(url)) << url;
+  }
+  const auto stock = OwnReceiverUrl("");
+  ASSERT_TRUE(stock);
+  EXPECT_EQ(stock->group, "239.255.76.67");
+  EXPECT_EQ(stock->port, 7667);
+  EXPECT_TRUE(stock->sources.empty());
+  const auto given = OwnReceiverUrl(
+      "udpm://239.255.76.68:7668?receiver=own&from=10.0.0.1,10.1.0.0/16&recv_buf_size=100000");
+  ASSERT_TRUE(given);
+  EXPECT_EQ(given->group, "239.255.76.68");
+  EXPECT_EQ(given->port, 7668);
+  EXPECT_EQ(given->receive_buffer_bytes, 100000);
+  EXPECT_THAT(given->sources, ElementsAre("10.0.0.1", "10.1.0.0/16"));
 }
 
 TEST(LcmUrl, PortIsToldForUdp) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // On the loopback of this machine, with ports of the kernel's choice.
-#include "daemon/obu/receive/udp_receiver.h"
+#include "daemon/rim/net/udp_receiver.h"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -12,12 +12,23 @@
 
 #include <chrono>
 
-#include "daemon/obu/octets/hex_text.h"
-
-namespace v2vouch::obu {
+namespace v2vouch::net {
 namespace {
 
 using testing::HasSubstr;
+
+constexpr std::size_t kLongest = 2304;
+
+std::unique_ptr<UdpReceiver> Open(const std::string& address, int port, int buffer_bytes,
+                                  std::string& error) {
+  return UdpReceiver::Open({.address = address,
+                            .port = port,
+                            .buffer_bytes = buffer_bytes,
+                            .longest = kLongest,
+                            .batch = 64,
+                            .sources = {}},
+                           error);
+}
 
 class Sender {
  public:
@@ -47,9 +58,9 @@ std::vector<Heard> HearAll(UdpReceiver& receiver, std::size_t count) {
   std::vector<Heard> heard;
   pollfd wait{receiver.descriptor(), POLLIN, 0};
   while (heard.size() < count && poll(&wait, 1, 2000) == 1) {
-    receiver.Receive([&](const ReceivedDatagram& datagram) {
+    receiver.Receive([&](const Datagram& datagram) {
       heard.push_back({{datagram.bytes.begin(), datagram.bytes.end()},
-                       std::string(datagram.source),
+                       datagram.source.Text(),
                        datagram.utime,
                        datagram.is_cut});
     });
@@ -59,7 +70,7 @@ std::vector<Heard> HearAll(UdpReceiver& receiver, std::size_t count) {
 
 TEST(UdpReceiver, GivesBytesSourceAndTheKernelsTime) {
   std::string error;
-  const auto receiver = UdpReceiver::Open("127.0.0.1", 0, 1 << 20, error);
+  const auto receiver = Open("127.0.0.1", 0, 1 << 20, error);
   ASSERT_TRUE(receiver) << error;
   EXPECT_GT(receiver->buffer_bytes(), 0);
   const Sender sender(receiver->port());
@@ -80,13 +91,13 @@ TEST(UdpReceiver, GivesBytesSourceAndTheKernelsTime) {
 // Failure mode 5: what does not fit is told, not shortened in silence.
 TEST(UdpReceiver, EmptyAndTooLongDatagramsAreTold) {
   std::string error;
-  const auto receiver = UdpReceiver::Open("127.0.0.1", 0, 1 << 20, error);
+  const auto receiver = Open("127.0.0.1", 0, 1 << 20, error);
   ASSERT_TRUE(receiver) << error;
   const Sender sender(receiver->port());
   sender.Send({});
   sender.Send(std::vector<std::uint8_t>(600, 1));
-  sender.Send(std::vector<std::uint8_t>(kLongestDatagram, 2));
-  sender.Send(std::vector<std::uint8_t>(kLongestDatagram + 1, 3));
+  sender.Send(std::vector<std::uint8_t>(kLongest, 2));
+  sender.Send(std::vector<std::uint8_t>(kLongest + 1, 3));
   sender.Send(std::vector<std::uint8_t>(9000, 4));
   const auto heard = HearAll(*receiver, 5);
   ASSERT_EQ(heard.size(), 5u);
@@ -99,12 +110,12 @@ TEST(UdpReceiver, EmptyAndTooLongDatagramsAreTold) {
 
 TEST(UdpReceiver, DropsOfAFullBufferAreCounted) {
   std::string error;
-  const auto receiver = UdpReceiver::Open("127.0.0.1", 0, 4096, error);
+  const auto receiver = Open("127.0.0.1", 0, 4096, error);
   ASSERT_TRUE(receiver) << error;
   const Sender sender(receiver->port());
   for (int i = 0; i < 500; ++i) sender.Send(std::vector<std::uint8_t>(1000, 1));
   HearAll(*receiver, 1);
-  while (receiver->Receive([](const ReceivedDatagram&) {}) > 0) {
+  while (receiver->Receive([](const Datagram&) {}) > 0) {
   }
   sender.Send({1});  // The count comes with the next one.
   HearAll(*receiver, 1);
@@ -113,13 +124,26 @@ TEST(UdpReceiver, DropsOfAFullBufferAreCounted) {
 
 TEST(UdpReceiver, WrongAddressesAndTakenPortsAreTold) {
   std::string error;
-  EXPECT_FALSE(UdpReceiver::Open("localhost", 1, 1, error));
+  EXPECT_FALSE(Open("localhost", 1, 1, error));
   EXPECT_THAT(error, HasSubstr("no IPv4 or IPv6 address"));
-  const auto first = UdpReceiver::Open("127.0.0.1", 0, 1 << 16, error);
+  const auto first = Open("127.0.0.1", 0, 1 << 16, error);
   ASSERT_TRUE(first);
-  EXPECT_FALSE(UdpReceiver::Open("127.0.0.1", first->port(), 1 << 16, error));
+  EXPECT_FALSE(Open("127.0.0.1", first->port(), 1 << 16, error));
   EXPECT_THAT(error, HasSubstr("in use"));
 }
 
+TEST(UdpReceiver, StrangersAreCountedAndNotHeard) {
+  UdpOptions options{.address = "127.0.0.1"};
+  std::string error;
+  ASSERT_TRUE(SourceFilter::Parse({"127.0.0.2"}, options.sources, error)) << error;
+  const auto receiver = UdpReceiver::Open(options, error);
+  ASSERT_TRUE(receiver) << error;
+  const Sender sender(receiver->port());
+  sender.Send({1});
+  ASSERT_TRUE(receiver->Wait(2000));
+  EXPECT_EQ(receiver->Receive([](const Datagram&) { FAIL(); }), 1);
+  EXPECT_EQ(receiver->strangers(), 1);
+}
+
 }  // namespace
-}  // namespace v2vouch::obu
+}  // namespace v2vouch::net
