@@ -6,6 +6,7 @@
 #include <array>
 
 #include "daemon/common/base/check.h"
+#include "daemon/common/base/hex_text.h"
 
 namespace v2vouch {
 
@@ -34,12 +35,7 @@ std::string Sha256::Hex() const {
   const Sha256 copy(*this);
   std::array<std::uint8_t, 32> digest{};
   V2VOUCH_CHECK(EVP_DigestFinal_ex(copy.context_.get(), digest.data(), nullptr) == 1);
-  std::string text;
-  for (const std::uint8_t byte : digest) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
+  return HexText(digest);
 }
 
 }  // namespace v2vouch

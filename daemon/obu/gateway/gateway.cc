@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "daemon/common/base/hex_text.h"
+
 namespace v2vouch::obu {
 namespace {
 
@@ -54,12 +56,7 @@ std::uint64_t KeyOf(const Datagram& datagram) {
 }
 
 std::string HexOfFirst(Bytes bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes.first(std::min<std::size_t>(bytes.size(), 16))) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
+  return HexText(bytes.first(std::min<std::size_t>(bytes.size(), 16)));
 }
 
 std::vector<count_t> Listed(const std::map<std::string, std::int64_t>& counts) {

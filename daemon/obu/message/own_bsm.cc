@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "daemon/common/base/hex_text.h"
+#include "daemon/obu/octets/byte_reader.h"
+
 namespace v2vouch::obu {
 namespace {
 
@@ -168,7 +171,7 @@ std::optional<Bsm> OwnBsm::Make(std::int64_t utime) {
 
 std::vector<std::uint8_t> DatagramOf(const Bsm& bsm, OutputForm form,
                                      const RsuTextOptions& options) {
-  std::array<std::uint8_t, 2304> buffer{};
+  std::array<std::uint8_t, kLongestDatagram> buffer{};
   std::size_t size = 0;
   if (WriteBsmFrame(bsm, buffer, size)) return {};
   const std::span<const std::uint8_t> frame = std::span(buffer).first(size);
@@ -194,11 +197,7 @@ std::vector<std::uint8_t> DatagramOf(const Bsm& bsm, OutputForm form,
           "\nTxMode=ALT\nTxChannel=" + std::to_string(options.channel) +
           "\nTxInterval=0\nDeliveryStart=\nDeliveryStop=\nSignature=" +
           (options.signs ? "True" : "False") + "\nEncryption=False\nPayload=";
-      for (const std::uint8_t byte : frame) {
-        text += "0123456789ABCDEF"[byte >> 4];
-        text += "0123456789ABCDEF"[byte & 15];
-      }
-      text += "\n";
+      text += UpperHexText(frame) + "\n";
       out.assign(text.begin(), text.end());
       break;
     }
