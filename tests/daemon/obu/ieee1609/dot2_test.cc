@@ -49,7 +49,7 @@ TEST(ReadDot2, RealEnvelopesHaveTheTimesAndSignersThatTsharkFinds) {
       ASSERT_TRUE(data.certificate);
       EXPECT_TRUE(data.certificate->is_implicit);
       EXPECT_TRUE(data.certificate->has_canonical_form);
-      EXPECT_TRUE(data.certificate->MaySignFor(0x20));
+      EXPECT_TRUE(data.certificate->psids.Has(0x20));
     }
   }
   EXPECT_EQ(bsms, 803);
@@ -74,9 +74,9 @@ TEST(ReadDot2, RealCertificateOfARoadSideUnitIsReadToItsEnd) {
   EXPECT_EQ(HexText(certificate.issuer_digest), "c620fb90caad3b9c");
   EXPECT_EQ(certificate.valid_from_s, 637007767u);
   EXPECT_EQ(certificate.valid_for_us, 10140ULL * 60 * 1000000);
-  ASSERT_EQ(certificate.psid_count, 7u);
-  EXPECT_EQ(certificate.psids[0], 2113685u);
-  EXPECT_EQ(certificate.psids[6], 128u);
+  ASSERT_EQ(certificate.psids.all().size(), 7u);
+  EXPECT_EQ(certificate.psids.all()[0], 2113685u);
+  EXPECT_EQ(certificate.psids.all()[6], 128u);
   EXPECT_EQ(certificate.key.form, CurvePoint::Form::kOdd);
   EXPECT_EQ(HexText(data.signature.r.x).substr(0, 8), "ffd5d7d4");
   EXPECT_EQ(HexText(data.signature.s).substr(0, 8), "f10d76bf");
