@@ -2,6 +2,7 @@
 // v2vouch-obu: from on-board units to channel BSM; prints what is in a capture.
 #include <iostream>
 
+#include "daemon/obu/framing/datagram.h"
 #include "daemon/programs/obu/decode.h"
 #include "daemon/programs/obu/live.h"
 #include "daemon/rim/config/yaml_reader.h"
@@ -32,9 +33,13 @@ Exit codes: 0 good, refused messages included; 1 the file cannot be read to its 
 packet, or a socket cannot be opened; 2 usage or configuration (certificates that cannot be used
 included).)";
 
-const std::vector<std::string> kFramings = {"auto",  "frame",    "dot2",     "wsmp", "cv2x",
-                                            "c2p",   "ethernet", "radiotap", "wlan", "llc",
-                                            "cohda", "geo",      "btp",      "cam"};
+std::vector<std::string> FramingNames() {
+  std::vector<std::string> names = {"auto"};
+  for (const v2vouch::obu::Layer layer : v2vouch::obu::Framings()) {
+    names.emplace_back(v2vouch::obu::LayerName(layer));
+  }
+  return names;
+}
 
 }  // namespace
 
@@ -49,7 +54,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", options.as_json, "One JSON object a line");
   app.add_flag("--join", options.join_lines, "Hex text: all lines are one datagram");
   app.add_option("--framing", framing, "Take datagrams for this, whatever they look like")
-      ->check(v2vouch::OneOf(kFramings))
+      ->check(v2vouch::OneOf(FramingNames()))
       ->capture_default_str();
   app.add_option("--config", config_path, "Ports, addresses and certificates of the gateway");
   app.add_option("--port", port, "Listen on this UDP port (default: 5398)")
