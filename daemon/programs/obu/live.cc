@@ -12,6 +12,7 @@
 #include "daemon/rim/io/lcm_bus.h"
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/stop_signal.h"
+#include "daemon/rim/wire/codec.h"
 
 namespace v2vouch::obu {
 namespace {
@@ -90,8 +91,7 @@ class Loop {
  private:
   template <class Message>
   bool Publish(const std::string& channel, const Message& message) {
-    bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+    wire::Encode(message, bytes_);
     return bus_ && bus_->Publish(channel, bytes_);
   }
 
