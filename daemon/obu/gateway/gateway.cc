@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "daemon/common/base/big_endian.h"
 #include "daemon/common/base/hex_text.h"
 
 namespace v2vouch::obu {
@@ -73,9 +74,9 @@ std::vector<count_t> Listed(const std::map<std::string, std::int64_t>& counts) {
 
 Gateway::Gateway(const GatewayConfig& config, TrustAnchors anchors, std::int64_t started_utime)
     : config_(config),
-      verifier_({.most_certificates = static_cast<std::size_t>(config.security.certificates),
-                 .checks_per_s = config.security.checks_per_s},
-                std::move(anchors)),
+      receptions_({.most_certificates = static_cast<std::size_t>(config.security.certificates),
+                   .checks_per_s = config.security.checks_per_s},
+                  std::move(anchors)),
       copies_(static_cast<std::int64_t>(config.duplicate_s * 1e6),
               static_cast<std::int64_t>(config.merge_s * 1e6)),
       last_utime_(started_utime) {
@@ -129,32 +130,20 @@ void Gateway::OnDatagram(const Arrival& arrival, std::vector<bsm_t>& out) {
 }
 
 void Gateway::Publish(const Arrival& arrival, Datagram& datagram, std::vector<bsm_t>& out) {
-  Reception reception;
-  reception.rx_utime = arrival.utime;
-  reception.seq = published_ + 1;
-  Judgement judgement;
   const std::uint64_t key = KeyOf(datagram);
-  if (datagram.cam) reception.cam_count = cam_counts_.CountOf(*datagram.cam);
-  if (datagram.cohda) reception.digest = datagram.cohda->certificate_digest;
   if (copies_.IsCopy(key, arrival.utime)) {
     ++duplicates_;
     copies_.Strengthen(key, datagram.rssi_dbm());
     return;
   }
-  if (datagram.dot2) {
-    judgement = verifier_.Judge(*datagram.dot2, arrival.utime);
-    reception.digest = judgement.digest;
-    reception.signature_state = judgement.signature_state();
-  }
-  const bsm_t message = BsmMessage(datagram, reception);
+  const Receptions::Heard heard = receptions_.Of(datagram, arrival.utime, published_ + 1);
+  const bsm_t message = BsmMessage(datagram, heard.reception);
   copies_.Add(key, message, out);
   ++published_;
   ++framing_counts_[std::string(LayerName(*datagram.layers.begin()))];
-  ++signatures_[std::string(FindingName(judgement.finding))];
+  ++signatures_[std::string(FindingName(heard.judgement.finding))];
   NoteClock(arrival.utime, message.generation_utime);
-  const std::uint32_t id = (std::uint32_t{message.id[0]} << 24) |
-                           (std::uint32_t{message.id[1]} << 16) |
-                           (std::uint32_t{message.id[2]} << 8) | message.id[3];
+  const std::uint32_t id = BigEndian32(message.id);
   if (senders_.size() < kMostSenders || senders_.contains(id)) senders_[id] = arrival.utime;
 }
 
@@ -172,7 +161,7 @@ obu_status_t Gateway::Status(std::int64_t utime) {
     return std::abs(utime - sender.second) > kSenderMemory_us;
   });
   status.senders = static_cast<std::int32_t>(senders_.size());
-  status.certificates = static_cast<std::int32_t>(verifier_.certificates());
+  status.certificates = static_cast<std::int32_t>(receptions_.certificates());
   status.silent_s = std::max(0.0, static_cast<double>(utime - last_utime_) * 1e-6);
   status.obu_silent = status.silent_s > config_.silent_s ? 1 : 0;
   status.clock_offset_s = std::numeric_limits<double>::quiet_NaN();

@@ -11,8 +11,7 @@
 #include "daemon/obu/framing/datagram.h"
 #include "daemon/obu/gateway/copy_filter.h"
 #include "daemon/obu/gateway/gateway_config.h"
-#include "daemon/obu/message/bsm_message.h"
-#include "daemon/obu/security/verifier.h"
+#include "daemon/obu/gateway/receptions.h"
 #include "v2vouch/obu_status_t.hpp"
 
 namespace v2vouch::obu {
@@ -57,9 +56,8 @@ class Gateway {
 
   GatewayConfig config_;
   std::vector<std::optional<Layer>> framings_;
-  Verifier verifier_;
+  Receptions receptions_;
   CopyFilter copies_;
-  CamCounts cam_counts_;
   std::array<std::uint8_t, kLongestDatagram> scratch_{};
 
   std::int64_t last_utime_;
