@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "daemon/common/base/big_endian.h"
+#include "daemon/common/base/fnv1a.h"
 #include "daemon/common/base/hex_text.h"
 
 namespace v2vouch::obu {
@@ -18,27 +19,10 @@ constexpr std::size_t kClockSamples = 101;
 constexpr std::size_t kFewestClockSamples = 10;
 constexpr std::int64_t kLogPause_us = 10000000;
 
-// FNV-1a, 64 bits.
-class ContentKey {
- public:
-  void Add(Bytes bytes) {
-    for (const std::uint8_t byte : bytes) value_ = (value_ ^ byte) * 0x100000001B3;
-  }
-  void Add(std::int64_t figure) {
-    for (int shift = 0; shift < 64; shift += 8) {
-      value_ = (value_ ^ (static_cast<std::uint64_t>(figure) >> shift & 0xFF)) * 0x100000001B3;
-    }
-  }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xCBF29CE484222325;
-};
-
 // Equal for copies of one message, whichever way they came. The signature belongs to it: who
 // repeats a message without or with another must not displace the true one.
 std::uint64_t KeyOf(const Datagram& datagram) {
-  ContentKey key;
+  Fnv1a key;
   if (datagram.dot2 && datagram.dot2->content == Dot2Data::Content::kSigned) {
     key.Add(datagram.dot2->to_be_signed);
     key.Add(datagram.dot2->signature.s);
