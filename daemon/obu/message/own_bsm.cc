@@ -13,8 +13,6 @@
 namespace v2vouch::obu {
 namespace {
 
-constexpr std::int64_t kOldestFix_us = 1000000;
-constexpr std::int64_t kOldestMotion_us = 500000;
 constexpr double kCourseSpeed_mps = 3.0;  // Slower than this, GNSS velocity tells no course.
 
 // `value` in units of `unit`; what is no number stays unavailable, what is too large saturates.
@@ -66,16 +64,20 @@ void SetMotion(const ego_motion_t& motion, BsmCore& core) {
 
 OwnBsm::OwnBsm(OwnVehicle vehicle, std::uint64_t seed) : vehicle_(vehicle), rng_(seed) {}
 
-void OwnBsm::OnMotion(const ego_motion_t& motion) {
-  if (std::isfinite(motion.speed_mps)) motion_ = motion;
+bool OwnBsm::OnMotion(const ego_motion_t& motion) {
+  if (!std::isfinite(motion.speed_mps)) return false;
+  motion_ = motion;
+  return true;
 }
 
-void OwnBsm::OnFix(const gnss_fix_t& fix) {
+bool OwnBsm::OnFix(const gnss_fix_t& fix) {
   const bool has_place = std::isfinite(fix.latitude_rad) && std::isfinite(fix.longitude_rad) &&
                          std::abs(fix.latitude_rad) <= kPi / 2.0 &&
                          std::abs(fix.longitude_rad) <= 2.0 * kPi &&
                          (fix.latitude_rad != 0.0 || fix.longitude_rad != 0.0);
-  if (has_place && fix.fix_type != gnss_fix_t::FIX_NONE) fix_ = fix;
+  if (!has_place || fix.fix_type == gnss_fix_t::FIX_NONE) return false;
+  fix_ = fix;
+  return true;
 }
 
 void OwnBsm::ChangeId(std::int64_t utime) {
