@@ -80,13 +80,34 @@ void Gateway::NoteClock(std::int64_t utime, std::int64_t generation_utime) {
   if (clock_offsets_us_.size() > kClockSamples) clock_offsets_us_.pop_front();
 }
 
+void Gateway::Read(const Arrival& arrival, Datagram& datagram) {
+  const InputConfig& input = config_.inputs.at(arrival.input);
+  const DatagramOptions options{framings_.at(arrival.input), input.allow_text,
+                                static_cast<std::uint16_t>(input.port)};
+  if (arrival.link_type < 0) {
+    ReadDatagram(arrival.bytes, options, scratch_, datagram);
+  } else {
+    ReadPacket(arrival.link_type, arrival.bytes, options, scratch_, datagram);
+  }
+}
+
 void Gateway::OnDatagram(const Arrival& arrival, std::vector<bsm_t>& out) {
   ++datagrams_;
   last_utime_ = std::max(last_utime_, arrival.utime);
   const InputConfig& input = config_.inputs.at(arrival.input);
-  Source& source = SourceOf(arrival.source);
+  Datagram datagram;
+  std::string address(arrival.source);
+  // A packet tells its sender inside; one off the air has none.
+  const bool is_packet = arrival.link_type >= 0;
+  if (is_packet) {
+    Read(arrival, datagram);
+    if (datagram.udp) address = datagram.udp->source_text();
+  }
+  const bool has_address = !is_packet || datagram.udp;
+  Source& source = SourceOf(address);
   ++source.datagrams;
-  if (!input.allow.empty() && std::ranges::find(input.allow, arrival.source) == input.allow.end()) {
+  if (has_address && !input.allow.empty() &&
+      std::ranges::find(input.allow, address) == input.allow.end()) {
     return Refuse("source_not_allowed");
   }
   const std::int64_t second = arrival.utime / 1000000;
@@ -95,17 +116,16 @@ void Gateway::OnDatagram(const Arrival& arrival, std::vector<bsm_t>& out) {
   if (++source.in_second > config_.most_per_source_per_s) return Refuse("over_rate");
   if (arrival.is_cut) return Refuse(FaultName(FaultKind::kTooLong));
 
-  Datagram datagram;
-  ReadDatagram(
-      arrival.bytes,
-      {framings_.at(arrival.input), input.allow_text, static_cast<std::uint16_t>(input.port)},
-      scratch_, datagram);
+  if (!is_packet) Read(arrival, datagram);
   if (datagram.fault) {
     Refuse(FaultName(datagram.fault.kind));
+    if (datagram.fault.kind == FaultKind::kOwnTransmission && datagram.bsm) {
+      unit_sent_ = datagram.bsm->core.id;
+    }
     if (datagram.fault.kind == FaultKind::kUnknownFraming &&
         arrival.utime - logged_utime_ > kLogPause_us) {
       logged_utime_ = arrival.utime;
-      log_.push_back("event=unknown_framing source=" + std::string(arrival.source) + " bytes=" +
+      log_.push_back("event=unknown_framing source=" + address + " bytes=" +
                      std::to_string(arrival.bytes.size()) + " first=" + HexOfFirst(arrival.bytes));
     }
     return;
