@@ -169,23 +169,7 @@ std::string JsonOf(const DatagramReport& report) {
 
 std::string SourceOf(const Datagram& datagram) {
   if (!datagram.udp) return "";
-  const UdpPacket& udp = *datagram.udp;
-  std::string text;
-  if (udp.is_ipv6) {
-    text = "[";
-    for (std::size_t i = 0; i < 16; i += 2) {
-      char group[8];
-      std::snprintf(group, sizeof group, "%s%x", i == 0 ? "" : ":",
-                    udp.source[i] * 256U + udp.source[i + 1]);
-      text += group;
-    }
-    text += "]";
-  } else {
-    for (std::size_t i = 0; i < 4; ++i) {
-      text += (i == 0 ? "" : ".") + std::to_string(udp.source[i]);
-    }
-  }
-  return text + ":" + std::to_string(udp.source_port);
+  return datagram.udp->source_text() + ":" + std::to_string(datagram.udp->source_port);
 }
 
 std::string TimeText(std::int64_t utime) {
