@@ -51,7 +51,7 @@ bool ReadDrive(const std::vector<std::string>& logs, const DaemonConfig& config,
         progress((static_cast<double>(i) + reader->progress()) / static_cast<double>(logs.size()));
       }
       const auto channel = decoder.Find(event.channel);
-      if (!channel || decoder.channels()[*channel].kind == wire::InputKind::kBsm) continue;
+      if (!channel || decoder.channels()[*channel].is_v2v()) continue;
       auto decoded = decoder.Decode(*channel, event.bytes, event.received, dropped);
       if (!decoded) {
         ++drive.refused;

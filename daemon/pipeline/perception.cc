@@ -7,6 +7,7 @@
 #include "daemon/common/models/ctra.h"
 #include "daemon/pipeline/source_clock.h"
 #include "daemon/pipeline/timeline.h"
+#include "daemon/v2v/intake/own_ids.h"
 #include "daemon/v2v/perception/sender_list.h"
 
 namespace v2vouch {
@@ -87,6 +88,7 @@ struct Perception::State {
   PerceptionConfig config;
   SourceClock clock;
   Timeline timeline;
+  OwnIds own_ids;
   BsmIntake intake;
   std::unique_ptr<BiasEstimator> bias;
   std::int64_t lists = 0;
@@ -154,6 +156,11 @@ std::optional<Reason> Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs)
   if (IsTooFarAhead(kV2vSource, bsm.stamp)) {
     outputs.Refuse(Reason::kFutureStamp, bsm.stamp);
     return Reason::kFutureStamp;
+  }
+  if (own_ids.Has(bsm.sender, bsm.stamp)) {
+    Tell(bsm, Reason::kBsmOwnEcho, outputs);
+    outputs.Refuse(Reason::kBsmOwnEcho, bsm.stamp);
+    return Reason::kBsmOwnEcho;
   }
   const EgoPlace place = Place();
   intake.Expire(bsm.stamp);
@@ -343,6 +350,7 @@ Timestamp Perception::newest_frame() const {
   return frame == nullptr ? Timestamp{} : frame->stamp;
 }
 
+void Perception::NoteOwnId(SenderId id, Timestamp at) { state_->own_ids.Note(id, at); }
 int Perception::sender_count() const { return static_cast<int>(state_->intake.senders().size()); }
 
 bool Perception::ego_gnss_suspect() const {

@@ -31,6 +31,9 @@ class Perception {
   /// frame counts as taken; a refusal of it then is among the diagnostics of that step.
   std::optional<Reason> Step(const Input& input, Outputs& outputs);
 
+  /// This car itself speaks under this id: a BSM under it is our own echo, whatever place it tells.
+  void NoteOwnId(SenderId id, Timestamp at);
+
   /// Copies of the newest lists predicted to `at` (not before the newest frame), marked stale, all
   /// sectors blind; empty once a hidden vehicle would be given up. Changes no state.
   void PredictedLists(Timestamp at, Outputs& outputs) const;

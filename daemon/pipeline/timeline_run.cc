@@ -5,16 +5,17 @@
 #include <string_view>
 #include <utility>
 
+#include "daemon/common/base/fnv1a.h"
 #include "daemon/pipeline/event_rank.h"
 #include "daemon/pipeline/timeline.h"
 
 namespace v2vouch {
 namespace {
 
-std::uint64_t Hash(std::string_view text, std::uint64_t seed) {  // FNV-1a.
-  std::uint64_t hash = 0xCBF29CE484222325ull ^ seed;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
-  return hash;
+std::uint64_t Hash(std::string_view text, std::uint64_t seed) {
+  Fnv1a hash(seed);
+  hash.Add(text);
+  return hash.value();
 }
 
 void NameSource(const EventKey& key, Diagnostic& diagnostic) {

@@ -17,16 +17,12 @@
 #include <v2vouch/truth_bsm_t.hpp>
 #include <v2vouch/truth_list_t.hpp>
 
+#include "daemon/common/base/big_endian.h"
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/wire/codec.h"
 
 namespace v2vouch::evaluation {
 namespace {
-
-std::uint32_t SenderFrom(const std::uint8_t id[4]) {
-  return static_cast<std::uint32_t>(id[0]) << 24 | static_cast<std::uint32_t>(id[1]) << 16 |
-         static_cast<std::uint32_t>(id[2]) << 8 | static_cast<std::uint32_t>(id[3]);
-}
 
 bool AllFinite(std::initializer_list<double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
@@ -104,7 +100,7 @@ class Reader {
       out.length_m = track.length_m;
       out.width_m = track.width_m;
       out.object_class = track.object_class;
-      out.sender = SenderFrom(track.v2v_id);
+      out.sender = BigEndian32(track.v2v_id);
       out.start = FromMicros(track.start_utime);
       out.visibility = track.visibility;
       out.trust = track.trust_state;
@@ -143,7 +139,7 @@ class Reader {
           object.x_m,       object.y_m, object.yaw_rad, object.speed_mps, object.yaw_rate_radps,
           object.accel_mps2};
       sample.is_hidden = object.is_hidden != 0;
-      sample.sender = SenderFrom(object.v2v_id);
+      sample.sender = BigEndian32(object.v2v_id);
       for (const truth_sensor_t& sensor : object.sensors) {
         sample.looks.push_back(
             {sensor.sensor, sensor.detection_probability, sensor.visible_fraction});
@@ -167,13 +163,13 @@ class Reader {
 
   void TakeBsm(const LogEvent& event) {
     const auto message = Decoded<bsm_t>(event);
-    if (message) log_.bsms.push_back({event.received, SenderFrom(message->id)});
+    if (message) log_.bsms.push_back({event.received, BigEndian32(message->id)});
   }
 
   void TakeReport(const LogEvent& event) {
     const auto message = Decoded<misbehavior_report_t>(event);
     if (!message) return;
-    log_.reports.push_back({event.received, SenderFrom(message->sender_id), message->check,
+    log_.reports.push_back({event.received, BigEndian32(message->sender_id), message->check,
                             message->verdict == misbehavior_report_t::ACCUSE});
   }
 
@@ -183,7 +179,7 @@ class Reader {
     const truth_bsm_t& m = *message;
     log_.bsm_truths.push_back({FromMicros(m.utime),
                                m.seq,
-                               SenderFrom(m.sender_id),
+                               BigEndian32(m.sender_id),
                                m.vehicle_id,
                                m.device_id,
                                m.is_attacker != 0,
@@ -207,7 +203,7 @@ class Reader {
     const auto message = Decoded<bsm_verdict_t>(event);
     if (!message) return;
     log_.bsm_verdicts.push_back({FromMicros(message->utime), message->seq,
-                                 SenderFrom(message->sender_id), message->trust_state,
+                                 BigEndian32(message->sender_id), message->trust_state,
                                  message->refusal});
   }
 

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "daemon/common/base/fnv1a.h"
 #include "daemon/common/base/random.h"
 
 namespace v2vouch::sim {
@@ -18,10 +19,11 @@ inline constexpr double kOutlierSigmas = 30.0;
 inline Random SubjectRandom(std::uint64_t seed, std::string_view name,
                             std::initializer_list<std::uint64_t> numbers) {
   // FNV-1a over the name, then the numbers; Random::ForSubject spreads the result.
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : name) hash = (hash ^ static_cast<std::uint8_t>(c)) * 1099511628211ull;
+  Fnv1a named;
+  named.Add(name);
+  std::uint64_t hash = named.value();
   for (const std::uint64_t number : numbers) {
-    hash = (hash ^ number) * 1099511628211ull;
+    hash = (hash ^ number) * Fnv1a::kPrime;
     hash ^= hash >> 29;
     hash *= 0x9E3779B97F4A7C15ull;
   }

@@ -183,7 +183,7 @@ TEST(ObuFuzz, MutatedDatagramsEndAsAMessageOrAFault) {
     const Octets bytes = Mutated(seed.bytes, seeds, rng);
     messages += Swallow(bytes, seed, verifier, 1700000000000000 + i * 100).has_message ? 1 : 0;
     if (testing::Test::HasFailure()) {
-      FAIL() << "mutation " << i << ": " << ToHex(bytes);
+      FAIL() << "mutation " << i << ": " << HexText(bytes);
     }
   }
   RecordProperty("messages", std::to_string(messages));

@@ -147,15 +147,6 @@ Octets FromHex(const std::string& hex) {
   return bytes;
 }
 
-std::string ToHex(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
-}
-
 std::vector<BsmVector> BsmVectors() {
   std::vector<BsmVector> vectors;
   const nlohmann::json json = Vectors();

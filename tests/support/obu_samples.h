@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/common/base/hex_text.h"
 #include "daemon/obu/j2735/bsm.h"
 
 namespace v2vouch {
@@ -12,7 +13,6 @@ namespace v2vouch {
 using Octets = std::vector<std::uint8_t>;
 
 Octets FromHex(const std::string& hex);
-std::string ToHex(std::span<const std::uint8_t> bytes);
 
 /// A payload of data/j2735_bsm_vectors.json.
 struct BsmVector {

@@ -214,7 +214,7 @@ Octets WrapUdp(const Octets& payload, int port, bool is_ipv6) {
 Octets HexText(const Octets& bytes, bool upper, std::size_t line) {
   Octets out;
   std::size_t column = 0;
-  for (const char letter : ToHex(bytes)) {
+  for (const char letter : HexText(bytes)) {
     out.push_back(static_cast<std::uint8_t>(upper ? std::toupper(letter) : letter));
     if (line > 0 && ++column % line == 0) out.push_back('\n');
   }

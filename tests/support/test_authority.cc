@@ -114,7 +114,7 @@ Octets Sha256(const Octets& bytes) {
 TestKey KeyOf(const std::string& name) { return KeyOfSecret(NumberOf("key of " + name).get()); }
 
 TestSignature Sign(const TestKey& key, const Octets& hash) {
-  const Owned<BIGNUM> k = NumberOf("nonce" + ToHex(key.secret) + ToHex(hash));
+  const Owned<BIGNUM> k = NumberOf("nonce" + HexText(key.secret) + HexText(hash));
   const Owned<EC_POINT> point = TimesG(k.get());
   TestSignature signature;
   signature.r_point = Compressed(point.get());

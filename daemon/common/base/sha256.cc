@@ -3,8 +3,6 @@
 
 #include <openssl/evp.h>
 
-#include <array>
-
 #include "daemon/common/base/check.h"
 
 namespace v2vouch {
@@ -29,17 +27,12 @@ void Sha256::Add(std::span<const std::uint8_t> bytes) {
   V2VOUCH_CHECK(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1);
 }
 
-std::string Sha256::Hex() const {
+std::array<std::uint8_t, 32> Sha256::Digest() const {
   // Of a copy: finishing ends a running digest.
   const Sha256 copy(*this);
   std::array<std::uint8_t, 32> digest{};
   V2VOUCH_CHECK(EVP_DigestFinal_ex(copy.context_.get(), digest.data(), nullptr) == 1);
-  std::string text;
-  for (const std::uint8_t byte : digest) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
+  return digest;
 }
 
 }  // namespace v2vouch

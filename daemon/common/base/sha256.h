@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+
+#include "daemon/common/base/hex_text.h"
 
 struct evp_md_ctx_st;
 
@@ -18,8 +21,10 @@ class Sha256 {
   Sha256& operator=(const Sha256& other);
 
   void Add(std::span<const std::uint8_t> bytes);
-  /// Digest of everything added so far, 64 hex digits; more may be added afterwards.
-  [[nodiscard]] std::string Hex() const;
+  /// Digest of everything added so far; more may be added afterwards.
+  [[nodiscard]] std::array<std::uint8_t, 32> Digest() const;
+  /// The same in 64 hex digits.
+  [[nodiscard]] std::string Hex() const { return HexText(Digest()); }
 
  private:
   struct Free {

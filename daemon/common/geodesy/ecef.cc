@@ -4,16 +4,16 @@
 #include <cmath>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/geodesy/ellipsoid.h"
 
 namespace v2vouch {
 namespace {
 
-// WGS-84 defining parameters (NIMA TR8350.2, table 3.1).
-constexpr double kA = 6378137.0;            // Semi-major axis [m].
-constexpr double kF = 1.0 / 298.257223563;  // Flattening.
-constexpr double kB = kA * (1.0 - kF);      // Semi-minor axis [m].
-constexpr double kE2 = kF * (2.0 - kF);     // First eccentricity squared.
-constexpr double kEp2 = kE2 / (1.0 - kE2);  // Second eccentricity squared.
+using wgs84::kA;
+using wgs84::kB;
+using wgs84::kE2;
+using wgs84::kEp2;
+using wgs84::kF;
 
 }  // namespace
 

@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "daemon/common/base/angle.h"
+#include "daemon/common/geodesy/curvature.h"
 #include "daemon/obu/ieee1609/dot2_time.h"
 
 namespace v2vouch::obu {
 namespace {
 
 constexpr double kSigmasAt95 = 2.4477;  // sqrt(chi-square quantile 0.95, 2 degrees of freedom).
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 std::int32_t Rounded(double value) { return static_cast<std::int32_t>(std::lround(value)); }
 
@@ -40,17 +40,11 @@ std::int32_t Accuracy(int cm, double extra_m) {
 }
 
 void Move(BsmCore& core, double forward_m, double heading_rad) {
-  // Radii of curvature of WGS-84 at this latitude.
-  constexpr double kA_m = 6378137.0;
-  constexpr double kE2 = 6.69437999014e-3;
-  const double latitude_rad = core.lat * 1e-7 * kRadians;
-  const double w = 1.0 - kE2 * std::sin(latitude_rad) * std::sin(latitude_rad);
-  const double meridian_m = kA_m * (1.0 - kE2) / (w * std::sqrt(w));
-  const double parallel_m = kA_m / std::sqrt(w) * std::max(std::cos(latitude_rad), 1e-6);
+  const CurvatureRadii radii = RadiiAt(FromDegrees(core.lat * 1e-7));
   const double north_m = forward_m * std::cos(heading_rad);
   const double east_m = forward_m * std::sin(heading_rad);
-  const double lat = core.lat + north_m / meridian_m / kRadians * 1e7;
-  double lon = core.lon + east_m / parallel_m / kRadians * 1e7;
+  const double lat = core.lat + ToDegrees(north_m / radii.meridian_m) * 1e7;
+  double lon = core.lon + ToDegrees(east_m / radii.parallel_m) * 1e7;
   if (lon > 1.8e9) lon -= 3.6e9;
   if (lon <= -1.8e9) lon += 3.6e9;
   core.lat = Rounded(std::clamp(lat, -9e8, 9e8));
@@ -99,8 +93,8 @@ BsmCore CoreOfCam(const Cam& cam, std::optional<std::int64_t> near_utime) {
       0.5 * (cam.length != 1023 ? cam.length * 0.1 : TypicalLength(cam.station_type));
   double extra_m = cam.length == 1023 ? half_m : 0.0;
   if (has_place && has_axis) {
-    const double motion_rad = cam.heading * 0.1 * kRadians;
-    Move(core, -half_m, cam.direction == 1 ? motion_rad + std::numbers::pi : motion_rad);
+    const double motion_rad = FromDegrees(cam.heading * 0.1);
+    Move(core, -half_m, cam.direction == 1 ? motion_rad + kPi : motion_rad);
   } else {
     extra_m = half_m;
   }

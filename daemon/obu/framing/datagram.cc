@@ -157,6 +157,8 @@ void ReadIp(Bytes bytes, DatagramOptions options, std::span<std::uint8_t> scratc
 
 }  // namespace
 
+std::span<const Layer> Framings() { return kOrder; }
+
 std::optional<int> Datagram::rssi_dbm() const {
   if (c2p && c2p->rssi_dbm) return c2p->rssi_dbm;
   if (radiotap) return radiotap->signal_dbm;

@@ -44,6 +44,9 @@ struct Datagram {
   [[nodiscard]] std::optional<int> rssi_dbm() const;
 };
 
+/// The framings that a datagram can have, in the order in which they are tried.
+std::span<const Layer> Framings();
+
 /// Takes a datagram apart by structure: a finite set of framings in a fixed order, each of which
 /// must fit its lengths to the end; nothing is searched for.
 ///

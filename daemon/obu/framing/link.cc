@@ -165,4 +165,20 @@ Fault ReadUdpPacket(Bytes bytes, UdpPacket& packet) {
   return udp.fault();
 }
 
+std::string UdpPacket::source_text() const {
+  std::string text;
+  if (!is_ipv6) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      text += (i == 0 ? "" : ".") + std::to_string(source[i]);
+    }
+    return text;
+  }
+  for (std::size_t i = 0; i < 16; i += 2) {
+    char group[8];
+    std::snprintf(group, sizeof group, "%s%x", i == 0 ? "" : ":", source[i] * 256U + source[i + 1]);
+    text += group;
+  }
+  return "[" + text + "]";
+}
+
 }  // namespace v2vouch::obu

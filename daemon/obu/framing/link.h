@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "daemon/obu/octets/byte_reader.h"
 
@@ -44,6 +45,9 @@ struct UdpPacket {
   std::array<std::uint8_t, 16> source{};  ///< IPv4 in the first four.
   bool is_ipv6 = false;
   Bytes payload;
+
+  /// "192.168.88.40", "[2001:db8:0:0:0:0:0:1]".
+  [[nodiscard]] std::string source_text() const;
 };
 /// IPv4 or IPv6, then UDP: kIpFragment for pieces, kNotV2x for other protocols.
 Fault ReadUdpPacket(Bytes bytes, UdpPacket& packet);

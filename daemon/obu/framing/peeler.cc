@@ -128,13 +128,8 @@ Fault Peeler::PeelFrame(Bytes bytes, std::size_t may_trail) {
   if (!frame.has_extensions) {
     if (const Fault fault = CheckTrailing(frame.trailing, may_trail, "MessageFrame")) return fault;
   }
-  if (frame.message_id != kBsmMessageId) {
-    return {FaultKind::kNotBsm, "messageId", frame.message_id};
-  }
   datagram_.bsm.emplace();
-  const Fault fault = ReadBsm(frame.value, *datagram_.bsm);
-  datagram_.bsm->has_frame_extensions = frame.has_extensions;
-  if (fault) {
+  if (const Fault fault = ReadBsm(frame, *datagram_.bsm)) {
     datagram_.bsm.reset();
     return fault;
   }

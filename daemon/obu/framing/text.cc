@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/obu/framing/text.h"
 
+#include "daemon/obu/octets/hex_text.h"
+
 namespace v2vouch::obu {
 namespace {
-
-bool IsBlank(char letter) {
-  return letter == ' ' || letter == '\t' || letter == '\r' || letter == '\n';
-}
-
-std::string_view Trimmed(std::string_view text) {
-  while (!text.empty() && IsBlank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && IsBlank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 bool EqualsIgnoringCase(std::string_view text, std::string_view lower) {
   if (text.size() != lower.size()) return false;

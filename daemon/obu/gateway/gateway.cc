@@ -6,6 +6,10 @@
 #include <limits>
 #include <utility>
 
+#include "daemon/common/base/big_endian.h"
+#include "daemon/common/base/fnv1a.h"
+#include "daemon/common/base/hex_text.h"
+
 namespace v2vouch::obu {
 namespace {
 
@@ -15,27 +19,10 @@ constexpr std::size_t kClockSamples = 101;
 constexpr std::size_t kFewestClockSamples = 10;
 constexpr std::int64_t kLogPause_us = 10000000;
 
-// FNV-1a, 64 bits.
-class ContentKey {
- public:
-  void Add(Bytes bytes) {
-    for (const std::uint8_t byte : bytes) value_ = (value_ ^ byte) * 0x100000001B3;
-  }
-  void Add(std::int64_t figure) {
-    for (int shift = 0; shift < 64; shift += 8) {
-      value_ = (value_ ^ (static_cast<std::uint64_t>(figure) >> shift & 0xFF)) * 0x100000001B3;
-    }
-  }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xCBF29CE484222325;
-};
-
 // Equal for copies of one message, whichever way they came. The signature belongs to it: who
 // repeats a message without or with another must not displace the true one.
 std::uint64_t KeyOf(const Datagram& datagram) {
-  ContentKey key;
+  Fnv1a key;
   if (datagram.dot2 && datagram.dot2->content == Dot2Data::Content::kSigned) {
     key.Add(datagram.dot2->to_be_signed);
     key.Add(datagram.dot2->signature.s);
@@ -54,12 +41,7 @@ std::uint64_t KeyOf(const Datagram& datagram) {
 }
 
 std::string HexOfFirst(Bytes bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes.first(std::min<std::size_t>(bytes.size(), 16))) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
+  return HexText(bytes.first(std::min<std::size_t>(bytes.size(), 16)));
 }
 
 std::vector<count_t> Listed(const std::map<std::string, std::int64_t>& counts) {
@@ -76,9 +58,9 @@ std::vector<count_t> Listed(const std::map<std::string, std::int64_t>& counts) {
 
 Gateway::Gateway(const GatewayConfig& config, TrustAnchors anchors, std::int64_t started_utime)
     : config_(config),
-      verifier_({.most_certificates = static_cast<std::size_t>(config.security.certificates),
-                 .checks_per_s = config.security.checks_per_s},
-                std::move(anchors)),
+      receptions_({.most_certificates = static_cast<std::size_t>(config.security.certificates),
+                   .checks_per_s = config.security.checks_per_s},
+                  std::move(anchors)),
       copies_(static_cast<std::int64_t>(config.duplicate_s * 1e6),
               static_cast<std::int64_t>(config.merge_s * 1e6)),
       last_utime_(started_utime) {
@@ -98,13 +80,34 @@ void Gateway::NoteClock(std::int64_t utime, std::int64_t generation_utime) {
   if (clock_offsets_us_.size() > kClockSamples) clock_offsets_us_.pop_front();
 }
 
+void Gateway::Read(const Arrival& arrival, Datagram& datagram) {
+  const InputConfig& input = config_.inputs.at(arrival.input);
+  const DatagramOptions options{framings_.at(arrival.input), input.allow_text,
+                                static_cast<std::uint16_t>(input.port)};
+  if (arrival.link_type < 0) {
+    ReadDatagram(arrival.bytes, options, scratch_, datagram);
+  } else {
+    ReadPacket(arrival.link_type, arrival.bytes, options, scratch_, datagram);
+  }
+}
+
 void Gateway::OnDatagram(const Arrival& arrival, std::vector<bsm_t>& out) {
   ++datagrams_;
   last_utime_ = std::max(last_utime_, arrival.utime);
   const InputConfig& input = config_.inputs.at(arrival.input);
-  Source& source = SourceOf(arrival.source);
+  Datagram datagram;
+  std::string address(arrival.source);
+  // A packet tells its sender inside; one off the air has none.
+  const bool is_packet = arrival.link_type >= 0;
+  if (is_packet) {
+    Read(arrival, datagram);
+    if (datagram.udp) address = datagram.udp->source_text();
+  }
+  const bool has_address = !is_packet || datagram.udp;
+  Source& source = SourceOf(address);
   ++source.datagrams;
-  if (!input.allow.empty() && std::ranges::find(input.allow, arrival.source) == input.allow.end()) {
+  if (has_address && !input.allow.empty() &&
+      std::ranges::find(input.allow, address) == input.allow.end()) {
     return Refuse("source_not_allowed");
   }
   const std::int64_t second = arrival.utime / 1000000;
@@ -113,17 +116,16 @@ void Gateway::OnDatagram(const Arrival& arrival, std::vector<bsm_t>& out) {
   if (++source.in_second > config_.most_per_source_per_s) return Refuse("over_rate");
   if (arrival.is_cut) return Refuse(FaultName(FaultKind::kTooLong));
 
-  Datagram datagram;
-  ReadDatagram(
-      arrival.bytes,
-      {framings_.at(arrival.input), input.allow_text, static_cast<std::uint16_t>(input.port)},
-      scratch_, datagram);
+  if (!is_packet) Read(arrival, datagram);
   if (datagram.fault) {
     Refuse(FaultName(datagram.fault.kind));
+    if (datagram.fault.kind == FaultKind::kOwnTransmission && datagram.bsm) {
+      unit_sent_ = datagram.bsm->core.id;
+    }
     if (datagram.fault.kind == FaultKind::kUnknownFraming &&
         arrival.utime - logged_utime_ > kLogPause_us) {
       logged_utime_ = arrival.utime;
-      log_.push_back("event=unknown_framing source=" + std::string(arrival.source) + " bytes=" +
+      log_.push_back("event=unknown_framing source=" + address + " bytes=" +
                      std::to_string(arrival.bytes.size()) + " first=" + HexOfFirst(arrival.bytes));
     }
     return;
@@ -132,32 +134,20 @@ void Gateway::OnDatagram(const Arrival& arrival, std::vector<bsm_t>& out) {
 }
 
 void Gateway::Publish(const Arrival& arrival, Datagram& datagram, std::vector<bsm_t>& out) {
-  Reception reception;
-  reception.rx_utime = arrival.utime;
-  reception.seq = published_ + 1;
-  Judgement judgement;
   const std::uint64_t key = KeyOf(datagram);
-  if (datagram.cam) reception.cam_count = cam_counts_.CountOf(*datagram.cam);
-  if (datagram.cohda) reception.digest = datagram.cohda->certificate_digest;
   if (copies_.IsCopy(key, arrival.utime)) {
     ++duplicates_;
     copies_.Strengthen(key, datagram.rssi_dbm());
     return;
   }
-  if (datagram.dot2) {
-    judgement = verifier_.Judge(*datagram.dot2, arrival.utime);
-    reception.digest = judgement.digest;
-    reception.signature_state = judgement.signature_state();
-  }
-  const bsm_t message = BsmMessage(datagram, reception);
+  const Receptions::Heard heard = receptions_.Of(datagram, arrival.utime, published_ + 1);
+  const bsm_t message = BsmMessage(datagram, heard.reception);
   copies_.Add(key, message, out);
   ++published_;
   ++framing_counts_[std::string(LayerName(*datagram.layers.begin()))];
-  ++signatures_[std::string(FindingName(judgement.finding))];
+  ++signatures_[std::string(FindingName(heard.judgement.finding))];
   NoteClock(arrival.utime, message.generation_utime);
-  const std::uint32_t id = (std::uint32_t{message.id[0]} << 24) |
-                           (std::uint32_t{message.id[1]} << 16) |
-                           (std::uint32_t{message.id[2]} << 8) | message.id[3];
+  const std::uint32_t id = BigEndian32(message.id);
   if (senders_.size() < kMostSenders || senders_.contains(id)) senders_[id] = arrival.utime;
 }
 
@@ -175,7 +165,7 @@ obu_status_t Gateway::Status(std::int64_t utime) {
     return std::abs(utime - sender.second) > kSenderMemory_us;
   });
   status.senders = static_cast<std::int32_t>(senders_.size());
-  status.certificates = static_cast<std::int32_t>(verifier_.certificates());
+  status.certificates = static_cast<std::int32_t>(receptions_.certificates());
   status.silent_s = std::max(0.0, static_cast<double>(utime - last_utime_) * 1e-6);
   status.obu_silent = status.silent_s > config_.silent_s ? 1 : 0;
   status.clock_offset_s = std::numeric_limits<double>::quiet_NaN();

@@ -102,9 +102,7 @@ void ReadAppPermissions(ByteReader& reader, Certificate& certificate) {
   for (std::size_t i = 0; i < count && reader.ok(); ++i) {
     const int preamble = reader.Byte("appPermissions");
     const std::uint32_t psid = WholePsid(reader);
-    if (certificate.psid_count < certificate.psids.size()) {
-      certificate.psids[certificate.psid_count++] = psid;
-    }
+    certificate.psids.Add(psid);
     if ((preamble & 0x80) != 0) {
       reader.Skip(1, "ssp");
       reader.Block("ssp");

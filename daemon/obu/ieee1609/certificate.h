@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "daemon/obu/octets/byte_reader.h"
 
@@ -28,6 +29,24 @@ struct EcdsaSignature {
 };
 EcdsaSignature ReadSignature(ByteReader& reader);
 
+/// Applications (provider service identifiers); those beyond the sixteenth are not kept.
+class PsidList {
+ public:
+  void Add(std::uint32_t psid) {
+    if (count_ < psids_.size()) psids_[count_++] = psid;
+  }
+  [[nodiscard]] bool Has(std::uint32_t psid) const {
+    return std::ranges::find(all(), psid) != all().end();
+  }
+  [[nodiscard]] std::span<const std::uint32_t> all() const {
+    return std::span(psids_).first(count_);
+  }
+
+ private:
+  std::array<std::uint32_t, 16> psids_{};
+  std::size_t count_ = 0;
+};
+
 /// Certificate of IEEE 1609.2-2016/2022 (ETSI TS 103 097 has a subset). Points into the datagram.
 struct Certificate {
   enum class Issuer : std::uint8_t { kDigest, kSelf };
@@ -40,12 +59,7 @@ struct Certificate {
   std::uint8_t hash_algorithm = 0;  ///< Of the issuer's digest: 0 = SHA-256.
   std::uint32_t valid_from_s = 0;   ///< Seconds since 2004, leap seconds included.
   std::uint64_t valid_for_us = 0;
-  std::array<std::uint32_t, 16> psids{};  ///< Applications that it may sign for.
-  std::size_t psid_count = 0;
-  /// Whether it may sign for this application.
-  [[nodiscard]] bool MaySignFor(std::uint32_t psid) const {
-    return std::find(psids.begin(), psids.begin() + psid_count, psid) != psids.begin() + psid_count;
-  }
+  PsidList psids;          ///< Applications that it may sign for.
   bool may_issue = false;  ///< Has certIssuePermissions.
   bool is_key_p256 = false;
   CurvePoint key;  ///< Verification key, or reconstruction value (implicit).

@@ -21,15 +21,19 @@ Fault ReadMessageFrame(std::span<const std::uint8_t> bytes, MessageFrame& frame)
   return {};
 }
 
-Fault ReadBsmFrame(std::span<const std::uint8_t> bytes, Bsm& bsm) {
-  MessageFrame frame;
-  if (const Fault fault = ReadMessageFrame(bytes, frame)) return fault;
+Fault ReadBsm(const MessageFrame& frame, Bsm& bsm) {
   if (frame.message_id != kBsmMessageId) {
     return {FaultKind::kNotBsm, "messageId", frame.message_id};
   }
   const Fault fault = ReadBsm(frame.value, bsm);
   bsm.has_frame_extensions = frame.has_extensions;
   return fault;
+}
+
+Fault ReadBsmFrame(std::span<const std::uint8_t> bytes, Bsm& bsm) {
+  MessageFrame frame;
+  if (const Fault fault = ReadMessageFrame(bytes, frame)) return fault;
+  return ReadBsm(frame, bsm);
 }
 
 std::string_view MessageName(int message_id) {

@@ -22,7 +22,10 @@ struct MessageFrame {
 /// Reads the frame that begins at the first byte. What lies behind it is told, not judged.
 Fault ReadMessageFrame(std::span<const std::uint8_t> bytes, MessageFrame& frame);
 
-/// Frame and BSM in one: kNotBsm with the id for every other message.
+/// The BSM of a frame: kNotBsm with the id for every other message.
+Fault ReadBsm(const MessageFrame& frame, Bsm& bsm);
+
+/// Frame and BSM in one.
 Fault ReadBsmFrame(std::span<const std::uint8_t> bytes, Bsm& bsm);
 
 /// "MAP", "SPAT", ...; "" for an id that no edition names.

@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "daemon/common/base/angle.h"
+#include "daemon/common/base/hex_text.h"
+#include "daemon/common/geodesy/curvature.h"
+#include "daemon/obu/octets/byte_reader.h"
 
 namespace v2vouch::obu {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr std::int64_t kOldestFix_us = 1000000;
-constexpr std::int64_t kOldestMotion_us = 500000;
 constexpr double kCourseSpeed_mps = 3.0;  // Slower than this, GNSS velocity tells no course.
 
 // `value` in units of `unit`; what is no number stays unavailable, what is too large saturates.
@@ -28,20 +29,7 @@ double Wrapped(double angle_rad) {
 }
 
 std::int32_t Heading(double angle_rad) {
-  return static_cast<std::int32_t>(std::lround(Wrapped(angle_rad) * 180.0 / kPi / 0.0125)) % 28800;
-}
-
-// Radii of curvature of WGS-84.
-struct Radii {
-  double meridian_m;
-  double parallel_m;  // Of the circle of latitude.
-};
-Radii RadiiAt(double latitude_rad) {
-  constexpr double kA_m = 6378137.0;
-  constexpr double kE2 = 6.69437999014e-3;
-  const double w = 1.0 - kE2 * std::sin(latitude_rad) * std::sin(latitude_rad);
-  return {kA_m * (1.0 - kE2) / (w * std::sqrt(w)),
-          kA_m / std::sqrt(w) * std::max(std::cos(latitude_rad), 1e-6)};
+  return static_cast<std::int32_t>(std::lround(ToDegrees(Wrapped(angle_rad)) / 0.0125)) % 28800;
 }
 
 // Ellipse of the horizontal covariance (east, north), where both variances are known.
@@ -58,7 +46,7 @@ void SetAccuracy(const gnss_fix_t& fix, BsmCore& core) {
   // Long axis counter-clockwise from east is half of atan2(2 en, ee - nn).
   const double from_north = Wrapped(kPi / 2.0 - 0.5 * std::atan2(2.0 * en, ee - nn));
   core.orientation =
-      static_cast<std::int32_t>(std::lround(from_north * 180.0 / kPi * 65535.0 / 360.0)) % 65535;
+      static_cast<std::int32_t>(std::lround(ToDegrees(from_north) * 65535.0 / 360.0)) % 65535;
 }
 
 std::int32_t Transmission(int gear) { return gear >= 0 && gear <= 3 ? gear : 7; }
@@ -68,24 +56,28 @@ void SetMotion(const ego_motion_t& motion, BsmCore& core) {
   core.transmission = Transmission(motion.gear);
   core.accel_long = Raw(motion.accel_long_mps2, 0.01, 2001);
   core.accel_lat = Raw(-motion.accel_lat_mps2, 0.01, 2001);
-  core.accel_yaw = Raw(-yaw_rate_radps * 180.0 / kPi, 0.01, 0);
-  if (std::abs(yaw_rate_radps * 180.0 / kPi) < 0.005) core.accel_yaw = 0;
+  core.accel_yaw = Raw(-ToDegrees(yaw_rate_radps), 0.01, 0);
+  if (std::abs(ToDegrees(yaw_rate_radps)) < 0.005) core.accel_yaw = 0;
 }
 
 }  // namespace
 
 OwnBsm::OwnBsm(OwnVehicle vehicle, std::uint64_t seed) : vehicle_(vehicle), rng_(seed) {}
 
-void OwnBsm::OnMotion(const ego_motion_t& motion) {
-  if (std::isfinite(motion.speed_mps)) motion_ = motion;
+bool OwnBsm::OnMotion(const ego_motion_t& motion) {
+  if (!std::isfinite(motion.speed_mps)) return false;
+  motion_ = motion;
+  return true;
 }
 
-void OwnBsm::OnFix(const gnss_fix_t& fix) {
+bool OwnBsm::OnFix(const gnss_fix_t& fix) {
   const bool has_place = std::isfinite(fix.latitude_rad) && std::isfinite(fix.longitude_rad) &&
                          std::abs(fix.latitude_rad) <= kPi / 2.0 &&
                          std::abs(fix.longitude_rad) <= 2.0 * kPi &&
                          (fix.latitude_rad != 0.0 || fix.longitude_rad != 0.0);
-  if (has_place && fix.fix_type != gnss_fix_t::FIX_NONE) fix_ = fix;
+  if (!has_place || fix.fix_type == gnss_fix_t::FIX_NONE) return false;
+  fix_ = fix;
+  return true;
 }
 
 void OwnBsm::ChangeId(std::int64_t utime) {
@@ -143,12 +135,12 @@ std::optional<Bsm> OwnBsm::Make(std::int64_t utime) {
   core.id = id_;
   core.msg_count = msg_count_;
   core.sec_mark = static_cast<std::int32_t>(utime / 1000 % 60000);
-  const Radii radii = RadiiAt(fix_->latitude_rad);
+  const CurvatureRadii radii = RadiiAt(fix_->latitude_rad);
   const double latitude_rad = fix_->latitude_rad + north_m / radii.meridian_m;
   const double longitude_rad =
       std::remainder(fix_->longitude_rad + east_m / radii.parallel_m, 2.0 * kPi);
-  core.lat = Raw(latitude_rad * 180.0 / kPi, 1e-7, 900000001);
-  core.lon = Raw(longitude_rad * 180.0 / kPi, 1e-7, 1800000001);
+  core.lat = Raw(ToDegrees(latitude_rad), 1e-7, 900000001);
+  core.lon = Raw(ToDegrees(longitude_rad), 1e-7, 1800000001);
   if (core.lon <= -1800000000) core.lon = 1800000000;  // The same meridian.
   if (fix_->fix_type >= gnss_fix_t::FIX_3D) core.elev = Raw(fix_->altitude_m, 0.1, -4096);
   SetAccuracy(*fix_, core);
@@ -168,7 +160,7 @@ std::optional<Bsm> OwnBsm::Make(std::int64_t utime) {
 
 std::vector<std::uint8_t> DatagramOf(const Bsm& bsm, OutputForm form,
                                      const RsuTextOptions& options) {
-  std::array<std::uint8_t, 2304> buffer{};
+  std::array<std::uint8_t, kLongestDatagram> buffer{};
   std::size_t size = 0;
   if (WriteBsmFrame(bsm, buffer, size)) return {};
   const std::span<const std::uint8_t> frame = std::span(buffer).first(size);
@@ -194,11 +186,7 @@ std::vector<std::uint8_t> DatagramOf(const Bsm& bsm, OutputForm form,
           "\nTxMode=ALT\nTxChannel=" + std::to_string(options.channel) +
           "\nTxInterval=0\nDeliveryStart=\nDeliveryStop=\nSignature=" +
           (options.signs ? "True" : "False") + "\nEncryption=False\nPayload=";
-      for (const std::uint8_t byte : frame) {
-        text += "0123456789ABCDEF"[byte >> 4];
-        text += "0123456789ABCDEF"[byte & 15];
-      }
-      text += "\n";
+      text += UpperHexText(frame) + "\n";
       out.assign(text.begin(), text.end());
       break;
     }

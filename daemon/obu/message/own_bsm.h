@@ -23,6 +23,9 @@ struct OwnVehicle {
   std::int64_t id_change_us = 300000000;  ///< A new TemporaryID after this; 0 = never.
 };
 
+inline constexpr std::int64_t kOldestFix_us = 1500000;  ///< A receiver of 1 Hz, and its delay.
+inline constexpr std::int64_t kOldestMotion_us = 500000;
+
 /// Makes the own car's BSMs of its odometry and GNSS. Reads no clock: time is the caller's.
 ///
 ///     place   = fix carried forward to `utime`, moved from the antenna to the footprint's centre
@@ -35,10 +38,11 @@ class OwnBsm {
   /// @param seed of the TemporaryIDs and first counts.
   OwnBsm(OwnVehicle vehicle, std::uint64_t seed);
 
-  void OnMotion(const ego_motion_t& motion);
-  void OnFix(const gnss_fix_t& fix);
+  /// @return whether it can be used.
+  bool OnMotion(const ego_motion_t& motion);
+  bool OnFix(const gnss_fix_t& fix);
 
-  /// The message for this moment, or nullopt while there is no fix of the last second.
+  /// The message for this moment, or nullopt while there is no fix of the last 1.5 s.
   std::optional<Bsm> Make(std::int64_t utime);
 
   [[nodiscard]] std::uint32_t id() const { return id_; }  ///< Of the latest message.

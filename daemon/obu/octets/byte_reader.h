@@ -13,6 +13,9 @@ namespace v2vouch::obu {
 
 using Bytes = std::span<const std::uint8_t>;
 
+/// Longest datagram looked at: a message and its envelopes stay under 1500 bytes.
+inline constexpr std::size_t kLongestDatagram = 2304;
+
 /// Reads whole bytes, big endian where not said otherwise, and the lengths of ASN.1 OER (ITU-T
 /// X.696). The first thing that goes wrong sticks: every later read gives 0. Never allocates.
 class ByteReader {

@@ -15,13 +15,13 @@ bool IsBlank(char letter) {
   return letter == ' ' || letter == '\t' || letter == '\r' || letter == '\n';
 }
 
+}  // namespace
+
 std::string_view Trimmed(std::string_view text) {
   while (!text.empty() && IsBlank(text.front())) text.remove_prefix(1);
   while (!text.empty() && IsBlank(text.back())) text.remove_suffix(1);
   return text;
 }
-
-}  // namespace
 
 Fault ReadHex(std::string_view text, std::span<std::uint8_t> scratch, Bytes& bytes) {
   text = Trimmed(text);

@@ -8,8 +8,8 @@
 
 namespace v2vouch::obu {
 
-/// Longest datagram looked at: a message and its envelopes stay under 1500 bytes.
-inline constexpr std::size_t kLongestDatagram = 2304;
+/// Without blanks, tabs and line breaks at either end.
+std::string_view Trimmed(std::string_view text);
 
 /// Hex digits in either case, blanks and line breaks anywhere between bytes, "0x" at the front.
 /// @return the bytes, in `scratch`; kBadText for anything else.

@@ -7,9 +7,10 @@
 #include <openssl/ecdsa.h>
 #include <openssl/evp.h>
 #include <openssl/obj_mac.h>
-#include <openssl/sha.h>
 
 #include <algorithm>
+
+#include "daemon/common/base/sha256.h"
 
 namespace v2vouch::obu {
 namespace {
@@ -109,12 +110,9 @@ std::optional<Point> Recovered(const Hash& hash, const EC_POINT* big_r, Bytes r,
 }  // namespace
 
 Hash Sha256Of(std::initializer_list<Bytes> parts) {
-  thread_local std::vector<std::uint8_t> joined;
-  joined.clear();
-  for (const Bytes part : parts) joined.insert(joined.end(), part.begin(), part.end());
-  Hash hash{};
-  SHA256(joined.data(), joined.size(), hash.data());
-  return hash;
+  Sha256 sum;
+  for (const Bytes part : parts) sum.Add(part);
+  return sum.Digest();
 }
 
 std::optional<Point> Decompressed(const CurvePoint& point) {

@@ -13,12 +13,6 @@ bool IsInTime(const Certificate& certificate, std::uint32_t dot2_time_s) {
   return dot2_time_s >= certificate.valid_from_s && dot2_time_s <= end_s;
 }
 
-// What a certificate's signature, or the key of an implicit one, is made over (1609.2, 5.3.1):
-// H(H(toBeSigned) || H(issuer)), of the empty string for one that signs itself.
-Hash SigningHash(const Certificate& certificate, const Hash& issuer_hash) {
-  return Sha256Of({Sha256Of({certificate.to_be_signed}), issuer_hash});
-}
-
 }  // namespace
 
 Hash CertificateHash(const Certificate& certificate) {
@@ -30,6 +24,10 @@ Hash CertificateHash(const Certificate& certificate) {
   const auto before = static_cast<std::size_t>(r.x.data() - certificate.whole.data()) - 1;
   static constexpr std::uint8_t kXOnly[] = {0x80};
   return Sha256Of({certificate.whole.first(before), kXOnly, r.x, certificate.signature.s});
+}
+
+Hash SigningHash(Bytes to_be_signed, const Hash& signer_hash) {
+  return Sha256Of({Sha256Of({to_be_signed}), signer_hash});
 }
 
 HashedId8 DigestOf(const Hash& hash) {
@@ -80,7 +78,7 @@ TrustAnchors::Answer TrustAnchors::Prove(const Certificate& certificate, std::ui
   if (above.state != ChainState::kVerified) return above;
   if (!issuer.may_issue) return {ChainState::kBroken, {}};
 
-  const Hash hash = SigningHash(certificate, CertificateHash(issuer));
+  const Hash hash = SigningHash(certificate.to_be_signed, CertificateHash(issuer));
   Answer answer{ChainState::kBroken, {}};
   if (!certificate.is_key_p256) return answer;
   if (certificate.is_implicit) {

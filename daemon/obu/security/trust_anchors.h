@@ -15,6 +15,11 @@ namespace v2vouch::obu {
 Hash CertificateHash(const Certificate& certificate);
 HashedId8 DigestOf(const Hash& hash);
 
+/// What a signature, or the key of an implicit certificate, is made over (1609.2, 5.3.1):
+///
+///     H(H(toBeSigned) || H(signer's certificate)),  of the empty string for one that signs itself
+Hash SigningHash(Bytes to_be_signed, const Hash& signer_hash);
+
 /// Why a chain does or does not lead to a configured anchor.
 enum class ChainState : std::uint8_t {
   kVerified,

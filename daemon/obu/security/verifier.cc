@@ -66,8 +66,8 @@ Verifier::Signer* Verifier::Find(const HashedId8& digest) {
   return &*found->second;
 }
 
-Verifier::Signer& Verifier::Learn(const Certificate& certificate, const Dot2Data& data) {
-  const Hash hash = CertificateHash(certificate);
+Verifier::Signer& Verifier::Learn(const Hash& hash, const Dot2Data& data) {
+  const Certificate& certificate = *data.certificate;
   const HashedId8 digest = DigestOf(hash);
   // Eight bytes can be made to collide, thirty-two cannot.
   if (Signer* known = Find(digest); known != nullptr && known->hash == hash) return *known;
@@ -83,7 +83,6 @@ Verifier::Signer& Verifier::Learn(const Certificate& certificate, const Dot2Data
   signer.digest = digest;
   signer.hash = hash;
   signer.psids = certificate.psids;
-  signer.psid_count = certificate.psid_count;
   signer.valid_from_s = certificate.valid_from_s;
   signer.valid_to_s = certificate.valid_from_s + certificate.valid_for_us / 1000000;
   // Proven for a time at which it is itself valid: whether it is now is asked for each message.
@@ -108,9 +107,8 @@ SignatureFinding Verifier::JudgeProven(const Signer& signer, const Dot2Data& dat
   if (time_s < signer.valid_from_s || time_s > signer.valid_to_s) {
     return SignatureFinding::kNotInTime;
   }
-  const auto psids = std::span(signer.psids).first(signer.psid_count);
-  const bool is_permitted = std::ranges::find(psids, data.psid) != psids.end();
-  return is_permitted ? SignatureFinding::kVerified : SignatureFinding::kNotPermitted;
+  return signer.psids.Has(data.psid) ? SignatureFinding::kVerified
+                                     : SignatureFinding::kNotPermitted;
 }
 
 SignatureFinding Verifier::JudgePinned(Signer& signer, const Dot2Data& data, const Hash& hash,
@@ -154,8 +152,10 @@ Judgement Verifier::Judge(const Dot2Data& data, std::int64_t rx_utime) {
   if (data.security_fault || data.hash_algorithm != 0 || !data.signature.is_p256) {
     return judgement;
   }
+  Hash certificate_hash{};
   if (data.certificate) {
-    judgement.digest = DigestOf(CertificateHash(*data.certificate));
+    certificate_hash = CertificateHash(*data.certificate);
+    judgement.digest = DigestOf(certificate_hash);
   } else if (data.signer != Dot2Data::Signer::kDigest) {
     return judgement;
   }
@@ -164,12 +164,12 @@ Judgement Verifier::Judge(const Dot2Data& data, std::int64_t rx_utime) {
     return judgement;
   }
   Signer* const signer =
-      data.certificate ? &Learn(*data.certificate, data) : Find(data.signer_digest);
+      data.certificate ? &Learn(certificate_hash, data) : Find(data.signer_digest);
   if (signer == nullptr) {
     judgement.finding = SignatureFinding::kCertificateUnknown;
     return judgement;
   }
-  const Hash hash = Sha256Of({Sha256Of({data.to_be_signed}), signer->hash});
+  const Hash hash = SigningHash(data.to_be_signed, signer->hash);
   if (signer->proven) {
     judgement.finding = JudgeProven(*signer, data, hash);
   } else if (signer->is_broken) {

@@ -64,8 +64,7 @@ class Verifier {
   struct Signer {
     HashedId8 digest{};
     Hash hash{};
-    std::array<std::uint32_t, 16> psids{};  // May sign for these.
-    std::size_t psid_count = 0;
+    PsidList psids;  // May sign for these.
     std::uint32_t valid_from_s = 0;
     std::uint64_t valid_to_s = 0;
     std::optional<PublicKey> proven;
@@ -78,7 +77,7 @@ class Verifier {
   };
 
   Signer* Find(const HashedId8& digest);
-  Signer& Learn(const Certificate& certificate, const Dot2Data& data);
+  Signer& Learn(const Hash& hash, const Dot2Data& data);
   bool SpendBudget(std::int64_t rx_utime);
   SignatureFinding JudgeProven(const Signer& signer, const Dot2Data& data, const Hash& hash) const;
   SignatureFinding JudgePinned(Signer& signer, const Dot2Data& data, const Hash& hash,

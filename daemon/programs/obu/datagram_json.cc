@@ -4,6 +4,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "daemon/common/base/hex_text.h"
 #include "daemon/obu/ieee1609/dot2_time.h"
 #include "daemon/programs/obu/datagram_report.h"
 
@@ -64,7 +65,7 @@ Json JsonOf(const Dot2Data& dot2, const Judgement& judgement) {
   if (dot2.generation_us) json["generation_utime"] = UtcOfDot2Micros(*dot2.generation_us);
   static constexpr const char* kSigners[] = {"none", "digest", "certificate", "self"};
   json["signer"] = kSigners[static_cast<std::size_t>(dot2.signer)];
-  json["certificate"] = HexOf(judgement.digest);
+  json["certificate"] = HexText(judgement.digest);
   json["signature"] = FindingName(judgement.finding);
   if (dot2.security_fault) json["unread"] = FaultText(dot2.security_fault);
   return json;
@@ -151,9 +152,9 @@ std::string JsonOf(const DatagramReport& report) {
     json["detail"] = FaultText(report.refused);
     if (report.message) json["refused_bsm"] = JsonOf(*report.message);
     const std::size_t shown = std::min<std::size_t>(report.captured.bytes.size(), 16);
-    json["first_bytes"] = HexOf(report.captured.bytes.first(shown));
+    json["first_bytes"] = HexText(report.captured.bytes.first(shown));
   }
-  if (report.message) json["sender"] = HexOf(std::span(report.message->id));
+  if (report.message) json["sender"] = HexText(std::span(report.message->id));
   if (datagram.frame && datagram.frame->message_id != kBsmMessageId) {
     json["message"] = MessageName(datagram.frame->message_id);
   }
@@ -166,34 +167,9 @@ std::string JsonOf(const DatagramReport& report) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string HexOf(Bytes bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
-}
-
 std::string SourceOf(const Datagram& datagram) {
   if (!datagram.udp) return "";
-  const UdpPacket& udp = *datagram.udp;
-  std::string text;
-  if (udp.is_ipv6) {
-    text = "[";
-    for (std::size_t i = 0; i < 16; i += 2) {
-      char group[8];
-      std::snprintf(group, sizeof group, "%s%x", i == 0 ? "" : ":",
-                    udp.source[i] * 256U + udp.source[i + 1]);
-      text += group;
-    }
-    text += "]";
-  } else {
-    for (std::size_t i = 0; i < 4; ++i) {
-      text += (i == 0 ? "" : ".") + std::to_string(udp.source[i]);
-    }
-  }
-  return text + ":" + std::to_string(udp.source_port);
+  return datagram.udp->source_text() + ":" + std::to_string(datagram.udp->source_port);
 }
 
 std::string TimeText(std::int64_t utime) {

@@ -28,7 +28,6 @@ std::string JsonOf(const DatagramReport& report);
 /// A paragraph: layer by layer, field by field with units.
 std::string TextOf(const DatagramReport& report);
 
-std::string HexOf(Bytes bytes);
 /// "192.168.88.40:1516"; "" where the packet was no UDP.
 std::string SourceOf(const Datagram& datagram);
 /// "2023-09-13 18:31:47.495000 UTC".

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "daemon/common/base/hex_text.h"
 #include "daemon/obu/etsi/cam_to_bsm.h"
 #include "daemon/obu/ieee1609/dot2_time.h"
 #include "daemon/programs/obu/datagram_report.h"
@@ -94,7 +95,7 @@ std::string Dot2Text(const Dot2Data& dot2, const Judgement& judgement) {
   std::string text = Line("signed, PSID 0x%x", dot2.psid);
   if (dot2.generation_us) text += ", generated " + TimeText(UtcOfDot2Micros(*dot2.generation_us));
   if (dot2.signer == Dot2Data::Signer::kSelf) text += ", by itself";
-  if (judgement.digest != HashedId8{}) text += ", certificate " + HexOf(judgement.digest);
+  if (judgement.digest != HashedId8{}) text += ", certificate " + HexText(judgement.digest);
   if (dot2.certificate) {
     text += Line(" (enclosed, %zu bytes, %s)", dot2.certificate->whole.size(),
                  dot2.certificate->is_implicit ? "implicit" : "explicit");
@@ -184,7 +185,7 @@ std::string LayerText(Layer layer, const DatagramReport& report) {
       return Line("BTP port %d, ITS-AID %u, parse result %d, verify result %d, certificate ",
                   datagram.cohda->btp_port, datagram.cohda->its_aid, datagram.cohda->parse_result,
                   datagram.cohda->verify_result) +
-             HexOf(datagram.cohda->certificate_digest);
+             HexText(datagram.cohda->certificate_digest);
     case Layer::kWsmp:
       return datagram.wsmp ? WsmpText(*datagram.wsmp) : "";
     case Layer::kDot2:
@@ -234,7 +235,7 @@ std::string TextOf(const DatagramReport& report) {
   if (report.refused) {
     const std::size_t shown = std::min<std::size_t>(report.captured.bytes.size(), 16);
     text += "  REFUSED: " + FaultText(report.refused) + "; first bytes " +
-            HexOf(report.captured.bytes.first(shown)) + "\n";
+            HexText(report.captured.bytes.first(shown)) + "\n";
   }
   return text;
 }

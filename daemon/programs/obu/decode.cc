@@ -8,9 +8,10 @@
 #include <map>
 #include <set>
 
+#include "daemon/common/base/big_endian.h"
 #include "daemon/obu/capture/capture_file.h"
 #include "daemon/obu/framing/datagram.h"
-#include "daemon/obu/message/bsm_message.h"
+#include "daemon/obu/gateway/receptions.h"
 #include "daemon/programs/obu/datagram_report.h"
 
 namespace v2vouch::obu {
@@ -34,9 +35,7 @@ struct Totals {
     if (const auto framing = report.framing()) ++framings[std::string(LayerName(*framing))];
     ++signatures[std::string(FindingName(report.judgement.finding))];
     if (senders.size() < 100000) {
-      const auto& id = report.message->id;
-      senders.insert((std::uint32_t{id[0]} << 24) | (std::uint32_t{id[1]} << 16) |
-                     (std::uint32_t{id[2]} << 8) | id[3]);
+      senders.insert(BigEndian32(report.message->id));
     }
   }
 };
@@ -123,8 +122,7 @@ int Decode(const DecodeOptions& options, TrustAnchors anchors) {
     return 1;
   }
   // All signatures of a file are looked at, however fast they came.
-  Verifier verifier({.checks_per_s = 1 << 30}, std::move(anchors));
-  CamCounts cam_counts;
+  Receptions receptions({.checks_per_s = 1 << 30}, std::move(anchors));
   Totals totals;
   std::array<std::uint8_t, kLongestDatagram> scratch{};
   DatagramOptions datagram_options{options.framing, true, 0};
@@ -135,17 +133,10 @@ int Decode(const DecodeOptions& options, TrustAnchors anchors) {
     report.captured = *captured;
     has_text_lines = has_text_lines || captured->line > 0;
     Read(*captured, datagram_options, scratch, report);
-    Reception reception{captured->utime, report.number, {}, 0};
-    if (report.datagram.dot2) {
-      report.judgement = verifier.Judge(*report.datagram.dot2, captured->utime);
-      reception.digest = report.judgement.digest;
-      reception.signature_state = report.judgement.signature_state();
-    } else if (report.datagram.cohda) {
-      reception.digest = report.datagram.cohda->certificate_digest;
-    }
-    if (report.datagram.cam) reception.cam_count = cam_counts.CountOf(*report.datagram.cam);
+    const auto heard = receptions.Of(report.datagram, captured->utime, report.number);
+    report.judgement = heard.judgement;
     if (report.datagram.bsm || report.datagram.cam) {
-      report.message = BsmMessage(report.datagram, reception);
+      report.message = BsmMessage(report.datagram, heard.reception);
     }
     totals.Add(report);
     std::cout << (options.as_json ? JsonOf(report) + "\n" : TextOf(report));

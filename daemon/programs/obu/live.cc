@@ -6,17 +6,19 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <thread>
 
 #include "daemon/obu/gateway/gateway.h"
+#include "daemon/programs/obu/input_door.h"
+#include "daemon/programs/obu/own_output.h"
 #include "daemon/rim/io/lcm_bus.h"
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/stop_signal.h"
-#include "daemon/rim/net/udp_receiver.h"
+#include "daemon/rim/wire/codec.h"
 
 namespace v2vouch::obu {
 namespace {
 
-constexpr int kReceiveBufferBytes = 4 << 20;
 constexpr std::int64_t kStatusPeriod_us = 1000000;
 constexpr int kLongestWait_ms = 100;  // How soon a stop is noticed.
 
@@ -37,26 +39,22 @@ class Loop {
   bool Open() {
     for (const InputConfig& input : config_.inputs) {
       std::string error;
-      auto receiver = net::UdpReceiver::Open({.address = input.bind,
-                                              .port = input.port,
-                                              .buffer_bytes = kReceiveBufferBytes,
-                                              .longest = kLongestDatagram,
-                                              .batch = 64,
-                                              .sources = {}},  // The gateway judges and counts.
-                                             error);
-      if (!receiver) {
+      auto door = InputDoor::Open(input, doors_.size(), error);
+      if (!door) {
         Log(error);
         return false;
       }
-      Log("event=listening address=" + input.bind + " port=" + std::to_string(receiver->port()) +
-          " framing=" + input.framing +
-          " buffer_bytes=" + std::to_string(receiver->buffer_bytes()) +
+      Log("event=listening " + door->text() + " framing=" + input.framing +
+          " buffer_bytes=" + std::to_string(door->buffer_bytes()) +
           (input.allow.empty() ? " allow=anybody"
                                : " allow=" + std::to_string(input.allow.size())));
-      waits_.push_back({receiver->descriptor(), POLLIN, 0});
-      receivers_.push_back(std::move(receiver));
+      waits_.push_back({door->descriptor(), POLLIN, 0});
+      doors_.push_back(std::move(door));
     }
-    return true;
+    std::string error;
+    own_ = OwnOutput::Start(config_, Log, error);
+    if (!error.empty()) Log(error);
+    return error.empty();
   }
 
   void Run() {
@@ -67,13 +65,17 @@ class Loop {
       const auto wait_ms = static_cast<int>(
           std::clamp<std::int64_t>((due - before + 999) / 1000, 0, kLongestWait_ms));
       poll(waits_.data(), waits_.size(), wait_ms);
-      for (std::size_t i = 0; i < receivers_.size(); ++i) {
-        receivers_[i]->Receive([&](const net::Datagram& datagram) {
-          const std::int64_t utime = datagram.utime != 0 ? datagram.utime : Now();
-          const std::string source = datagram.source.Text();
-          gateway_.OnDatagram({datagram.bytes, source, i, utime, datagram.is_cut}, out_);
+      bool has_lost_door = false;
+      for (const auto& door : doors_) {
+        const bool is_open = door->Receive([&](const Arrival& arrival) {
+          gateway_.OnDatagram(arrival, out_);
+          const auto id = gateway_.TakeUnitSent();
+          if (id && own_) own_->OnUnitSent(*id, Now());
         });
+        has_lost_door = has_lost_door || !is_open;
       }
+      // poll() would come back at once, for ever; the interface may come back.
+      if (has_lost_door) std::this_thread::sleep_for(std::chrono::milliseconds(kLongestWait_ms));
       const std::int64_t now = Now();
       gateway_.Flush(now, out_);
       PublishAll();
@@ -86,8 +88,8 @@ class Loop {
     const obu_status_t last = StatusNow(Now());
     Log("event=stopped datagrams=" + std::to_string(last.datagrams) + " published=" +
         std::to_string(last.published) + " duplicates=" + std::to_string(last.duplicates) +
-        " kernel_drops=" + std::to_string(last.kernel_drops) +
-        " publish_failures=" + std::to_string(last.publish_failures));
+        " kernel_drops=" + std::to_string(last.kernel_drops) + " publish_failures=" +
+        std::to_string(last.publish_failures) + " own_sent=" + std::to_string(last.own_sent));
     for (const count_t& refusal : last.refusals) {
       Log("event=refused_in_all reason=" + refusal.name +
           " total=" + std::to_string(refusal.count));
@@ -97,8 +99,7 @@ class Loop {
  private:
   template <class Message>
   bool Publish(const std::string& channel, const Message& message) {
-    bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+    wire::Encode(message, bytes_);
     return bus_ && bus_->Publish(channel, bytes_);
   }
 
@@ -113,12 +114,18 @@ class Loop {
   obu_status_t StatusNow(std::int64_t now) {
     obu_status_t status = gateway_.Status(now);
     status.publish_failures = failures_;
+    const OwnOutput::Figures own = own_ ? own_->figures() : OwnOutput::Figures{};
+    status.own_state = static_cast<std::int8_t>(own.state);
+    for (int i = 0; i < 4; ++i) {
+      status.own_id[i] = static_cast<std::uint8_t>(own.id >> (24 - 8 * i));
+    }
+    status.own_sent = own.sent;
+    status.own_send_failures = own.failures;
     status.kernel_drops = 0;
-    for (const auto& receiver : receivers_) {
-      status.kernel_drops += receiver->kernel_drops();
-      if (status.receive_buffer_bytes < 0 ||
-          receiver->buffer_bytes() < status.receive_buffer_bytes) {
-        status.receive_buffer_bytes = receiver->buffer_bytes();
+    for (const auto& door : doors_) {
+      status.kernel_drops += door->kernel_drops();
+      if (status.receive_buffer_bytes < 0 || door->buffer_bytes() < status.receive_buffer_bytes) {
+        status.receive_buffer_bytes = door->buffer_bytes();
       }
     }
     return status;
@@ -155,9 +162,10 @@ class Loop {
 
   GatewayConfig config_;
   Gateway gateway_;
-  std::vector<std::unique_ptr<net::UdpReceiver>> receivers_;
+  std::vector<std::unique_ptr<InputDoor>> doors_;
   std::vector<pollfd> waits_;
   std::unique_ptr<LcmBus> bus_;
+  std::unique_ptr<OwnOutput> own_;
   std::vector<bsm_t> out_;
   std::vector<std::uint8_t> bytes_;
   std::int64_t failures_ = 0;
@@ -179,6 +187,7 @@ void CheckGatewayConfig(const GatewayConfig& config, std::vector<std::string>& p
   if (const std::string problem = CheckLcmUrl(config.lcm_url); !problem.empty()) {
     problems.push_back("lcm_url: " + problem);
   }
+  CheckOwnBsm(config.own_bsm, problems);
 }
 
 int RunGateway(const GatewayConfig& config, TrustAnchors anchors) {

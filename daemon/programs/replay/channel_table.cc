@@ -43,7 +43,7 @@ class Judge {
   Judge(const ChannelTable& channels, const DaemonConfig& config)
       : channels_(channels), config_(config) {
     for (const auto& input : wire::InputChannels(config.perception.vehicle, config.lcm.channels)) {
-      inputs_.push_back(input.name);
+      if (!input.is_optional()) inputs_.push_back(input.name);
     }
     for (const auto& [name, figures] : channels) {
       events_ += figures.received;

@@ -147,7 +147,9 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
   Engine engine(config);
   Outbox outbox;
   LogEvent event;
-  for (const auto& input : engine.channels()) result.channels[input.name].is_input = true;
+  for (const auto& input : engine.channels()) {
+    if (!input.is_optional()) result.channels[input.name].is_input = true;
+  }
   Timestamp first{};
   Timestamp last{};
   while (reader->Next(event)) {
@@ -177,6 +179,7 @@ bool Replay(const std::string& in, const std::string& out, const DaemonConfig& g
       ++result.copied;
       continue;
     }
+    channel.is_input = true;
     Step(event, engine, outbox, channel, result);
     WriteAll(outbox, event.received, writer.get());
   }

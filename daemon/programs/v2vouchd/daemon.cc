@@ -60,8 +60,7 @@ class Daemon {
     std::vector<Receiver::Subscription> own;
     std::vector<Receiver::Subscription> v2v;
     for (const wire::InputChannel& channel : engine_.channels()) {
-      const bool is_bsm = channel.kind == wire::InputKind::kBsm;
-      (is_bsm && has_own_v2v_bus ? v2v : own).push_back({channel.name, SinkOf(channel)});
+      (channel.is_v2v() && has_own_v2v_bus ? v2v : own).push_back({channel.name, SinkOf(channel)});
     }
     // Never an input: heard only to notice that another program sends them too.
     for (const std::string* output : WatchedOutputs()) {
@@ -115,7 +114,7 @@ class Daemon {
           } else {
             arrival.content = Refusal(Reason::kTooLarge);
           }
-          if (channel.kind == wire::InputKind::kBsm) {
+          if (channel.is_v2v()) {
             queue_.PushBsm(std::move(arrival));
           } else if (channel.kind == wire::InputKind::kCameraImage) {
             detect_.Offer(std::move(arrival));

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "daemon/common/base/fnv1a.h"
+
 namespace v2vouch {
 
 void ForeignOutputs::Sent(std::span<const std::uint8_t> bytes) {
@@ -27,10 +29,10 @@ std::int64_t ForeignOutputs::count() const {
   return count_;
 }
 
-std::uint64_t ForeignOutputs::HashOf(std::span<const std::uint8_t> bytes) {  // FNV-1a.
-  std::uint64_t hash = 0xCBF29CE484222325ull;
-  for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001B3ull;
-  return std::max<std::uint64_t>(hash, 1);  // 0 is an empty slot.
+std::uint64_t ForeignOutputs::HashOf(std::span<const std::uint8_t> bytes) {
+  Fnv1a hash;
+  hash.Add(bytes);
+  return std::max<std::uint64_t>(hash.value(), 1);  // 0 is an empty slot.
 }
 
 }  // namespace v2vouch

@@ -85,9 +85,11 @@ std::string KeyOf(const wire::InputChannel& channel) {
     case wire::InputKind::kGnss:
       return "lcm.channels.ego_gnss";
     case wire::InputKind::kBsm:
+      return "lcm.channels.bsm";
+    case wire::InputKind::kOwnBsm:
       break;
   }
-  return "lcm.channels.bsm";
+  return "lcm.channels.own_bsm";
 }
 
 }  // namespace

@@ -51,6 +51,9 @@ void Engine::OnMessage(std::string_view channel, std::span<const std::uint8_t> b
   if (!decoded) return Refuse(*index, decoded.refusal());
   if (const auto* input = std::get_if<Input>(&*decoded)) {
     Take(*index, *input, outbox);
+  } else if (const auto* own = std::get_if<wire::OwnBsm>(&*decoded)) {
+    perception_.NoteOwnId(own->bsm.sender, own->bsm.stamp);
+    watch_.Accepted(*index, own->bsm.stamp, own->bsm.seq);
   } else {
     Refuse(*index, Reason::kNoDetector);
   }

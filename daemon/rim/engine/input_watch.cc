@@ -30,6 +30,7 @@ std::optional<NoticeSubject> SubjectOf(const wire::InputChannel& channel) {
     case wire::InputKind::kGnss:
       return NoticeSubject{NoticeSubject::Kind::kGnss, 0};
     case wire::InputKind::kBsm:  // Nobody has to send any.
+    case wire::InputKind::kOwnBsm:
       break;
   }
   return std::nullopt;
@@ -83,6 +84,7 @@ void InputWatch::Report(std::vector<wire::InputStatus>& reports) {
   reports.clear();
   const double passed_s = last_report_ ? ToSeconds(elapsed_ - *last_report_) : 0.0;
   for (Watched& input : inputs_) {
+    if (input.channel.is_optional() && input.received == 0) continue;
     wire::InputStatus report;
     report.channel = input.channel.name;
     report.received = input.received;

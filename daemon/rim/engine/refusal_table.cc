@@ -36,7 +36,7 @@ void RefusalTable::Add(std::string_view channel, const Refusal& refusal, std::ui
 
 Refusal WithField(Refusal refusal, wire::InputKind kind) {
   if (!refusal.field.empty()) return refusal;
-  const bool is_bsm = kind == wire::InputKind::kBsm;
+  const bool is_bsm = kind == wire::InputKind::kBsm || kind == wire::InputKind::kOwnBsm;
   switch (refusal.reason) {
     case Reason::kWrongType:
       refusal.field = "fingerprint";

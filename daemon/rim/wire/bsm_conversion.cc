@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/base/big_endian.h"
 #include "daemon/rim/wire/field_judge.h"
 
 namespace v2vouch::wire {
@@ -104,7 +105,7 @@ Result<Bsm> FromWire(const bsm_t& message, Timestamp received, RefusalTally& unu
   bsm.stamp = FromMicros(message.rx_utime);
   bsm.received = received;
   bsm.seq = SafeSeq(message.seq);
-  for (const std::uint8_t octet : message.id) bsm.sender = (bsm.sender << 8) | octet;
+  bsm.sender = BigEndian32(message.id);
   std::copy(std::begin(message.certificate_digest), std::end(message.certificate_digest),
             bsm.certificate.begin());
   bsm.signature = SignatureOf(message.signature_state, judge);

@@ -19,6 +19,7 @@ struct ChannelNames {
   std::string ego_motion = "EGO_MOTION";
   std::string ego_gnss = "EGO_GNSS";
   std::string bsm = "BSM";
+  std::string own_bsm = "OWN_BSM";
   std::string tracks_local = "TRACKS_LOCAL";
   std::string tracks_priority = "TRACKS_PRIORITY";
   std::string tracks_v2v = "TRACKS_V2V";
@@ -38,6 +39,7 @@ struct ChannelNames {
     a.Text("ego_motion", ego_motion);
     a.Text("ego_gnss", ego_gnss);
     a.Text("bsm", bsm);
+    a.Text("own_bsm", own_bsm);
     a.Text("tracks_local", tracks_local);
     a.Text("tracks_priority", tracks_priority);
     a.Text("tracks_v2v", tracks_v2v);

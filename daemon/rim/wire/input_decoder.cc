@@ -93,6 +93,7 @@ std::vector<InputChannel> InputChannels(const VehicleConfig& vehicle, const Chan
   }
   channels.push_back({names.ego_gnss, InputKind::kGnss, 0, kGnssPeriod_s});
   channels.push_back({names.bsm, InputKind::kBsm, 0, 0.0});
+  channels.push_back({names.own_bsm, InputKind::kOwnBsm, 0, 0.0});
   return channels;
 }
 
@@ -154,6 +155,13 @@ Result<InputDecoder::Decoded> InputDecoder::Decode(std::size_t channel,
       const auto message = wire::Decode<bsm_t>(bytes);
       if (!message) return message.refusal();
       return AsInput(FromWire(*message, received, dropped));
+    }
+    case InputKind::kOwnBsm: {
+      const auto message = wire::Decode<bsm_t>(bytes);
+      if (!message) return message.refusal();
+      auto bsm = FromWire(*message, received, dropped);
+      if (!bsm) return bsm.refusal();
+      return Decoded(OwnBsm{*std::move(bsm)});
     }
   }
   return Reason::kUnknownChannel;

@@ -17,7 +17,16 @@
 
 namespace v2vouch::wire {
 
-enum class InputKind { kRadar, kCameraBoxes, kCameraImage, kObjects, kEgoMotion, kGnss, kBsm };
+enum class InputKind {
+  kRadar,
+  kCameraBoxes,
+  kCameraImage,
+  kObjects,
+  kEgoMotion,
+  kGnss,
+  kBsm,
+  kOwnBsm,  ///< What this car itself sends, told by its gateway.
+};
 
 /// One channel that this vehicle listens to.
 struct InputChannel {
@@ -25,10 +34,22 @@ struct InputChannel {
   InputKind kind = InputKind::kBsm;
   int sensor = 0;         ///< Index of the sensor in its list.
   double period_s = 0.0;  ///< Nominal; 0: messages come when they come.
+
+  /// From the V2V side: BSMs, received or sent.
+  [[nodiscard]] bool is_v2v() const {
+    return kind == InputKind::kBsm || kind == InputKind::kOwnBsm;
+  }
+  /// Few cars have it: worth no word while nothing comes.
+  [[nodiscard]] bool is_optional() const { return kind == InputKind::kOwnBsm; }
+};
+
+/// A BSM that this car has sent: its echoes bear the same sender.
+struct OwnBsm {
+  Bsm bsm;
 };
 
 /// Every input channel of a vehicle: ego motion, radars, cameras (one channel each, as the
-/// camera's `source` says), sources of objects, GNSS, BSMs.
+/// camera's `source` says), sources of objects, GNSS, BSMs, the own car's BSMs.
 std::vector<InputChannel> InputChannels(const VehicleConfig& vehicle, const ChannelNames& names);
 
 /// Where what our detector saw through `camera` is published: CAMERA_<NAME>_DETECTED.
@@ -44,7 +65,7 @@ class InputDecoder {
   /// Position in channels(); nullopt for a channel that is none of ours.
   [[nodiscard]] std::optional<std::size_t> Find(std::string_view channel) const;
 
-  using Decoded = std::variant<Input, CameraImage>;
+  using Decoded = std::variant<Input, CameraImage, OwnBsm>;
   /// `dropped` counts detections and boxes left out of a message that was taken, and figures that
   /// were left unused (kFieldUnused), by field.
   Result<Decoded> Decode(std::size_t channel, std::span<const std::uint8_t> bytes,

@@ -30,7 +30,7 @@ Read ReadAll(const std::string& path, bool join = false) {
   const auto file = CaptureFile::Open(path, join, read.error);
   if (!file) return read;
   while (const auto captured = file->Next(read.error)) {
-    read.packets.push_back(captured->fault ? FaultText(captured->fault) : ToHex(captured->bytes));
+    read.packets.push_back(captured->fault ? FaultText(captured->fault) : HexText(captured->bytes));
     read.lines.push_back(captured->line);
   }
   return read;

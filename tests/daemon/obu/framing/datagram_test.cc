@@ -48,8 +48,8 @@ TEST(ReadDatagram, UnknownBytesAreUnknownNotSearched) {
   for (const Octets& prefix : {FromHex("ff"), FromHex("10162002"), FromHex("55aa55aa"),
                                FromHex("0015"), FromHex("0b80")}) {
     const Octets bytes = Joined(prefix, frame);
-    EXPECT_TRUE(Read(bytes).fault) << ToHex(prefix);
-    EXPECT_FALSE(Read(bytes).bsm) << ToHex(prefix);
+    EXPECT_TRUE(Read(bytes).fault) << HexText(prefix);
+    EXPECT_FALSE(Read(bytes).bsm) << HexText(prefix);
   }
   EXPECT_EQ(Read(FromHex("ffeeddcc")).fault.kind, FaultKind::kUnknownFraming);
 }
@@ -65,7 +65,7 @@ TEST(ReadDatagram, EveryPrefixIsRefused) {
     for (std::size_t size = 0; size < whole.size(); ++size) {
       const Octets prefix(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
       const Datagram datagram = Read(prefix);
-      EXPECT_TRUE(datagram.fault) << size << " of " << ToHex(whole);
+      EXPECT_TRUE(datagram.fault) << size << " of " << HexText(whole);
     }
   }
 }

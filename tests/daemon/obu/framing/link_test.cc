@@ -40,7 +40,7 @@ TEST(ReadHex, UpperLowerMixedBlanksAndLineBreaks) {
   Bytes bytes;
   for (const char* text : {"00142aFf", "0x00142AFF", " 00 14\t2a\r\nff\n", "0014\n2aff\n\n"}) {
     ASSERT_FALSE(ReadHex(text, scratch, bytes)) << text;
-    EXPECT_EQ(ToHex(bytes), "00142aff");
+    EXPECT_EQ(HexText(bytes), "00142aff");
   }
   EXPECT_EQ(ReadHex("0014 2", scratch, bytes).kind, FaultKind::kBadText);
   EXPECT_EQ(ReadHex("001g", scratch, bytes).kind, FaultKind::kBadText);

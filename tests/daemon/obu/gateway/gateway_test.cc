@@ -234,7 +234,7 @@ TEST(Gateway, SignaturesUnderAConfiguredRootAreToldApart) {
   EXPECT_EQ(rig.Hear(SignedBy(car, Frame(1), now, true), 0)[0].signature_state, 1);
   const auto known = rig.Hear(SignedBy(car, Frame(2), now, false), 1000);
   EXPECT_EQ(known[0].signature_state, 1);
-  EXPECT_EQ(ToHex(known[0].certificate_digest), ToHex(TestDigest(car)));
+  EXPECT_EQ(HexText(known[0].certificate_digest), HexText(TestDigest(car)));
   EXPECT_EQ(rig.Hear(SignedBy(forger, Frame(3), now, false), 2000)[0].signature_state, 2);
   EXPECT_EQ(CountOf(rig.Status(3000).signatures, "verified"), 2);
 }

@@ -43,13 +43,13 @@ TEST(ReadDot2, RealEnvelopesHaveTheTimesAndSignersThatTsharkFinds) {
     EXPECT_EQ(UtcOfDot2Micros(*data.generation_us), record.generation_utime);
     EXPECT_TRUE(data.signature.is_p256);
     if (record.signer == "digest") {
-      EXPECT_EQ(ToHex(data.signer_digest), record.digest);
+      EXPECT_EQ(HexText(data.signer_digest), record.digest);
     } else {
       ++certificates;
       ASSERT_TRUE(data.certificate);
       EXPECT_TRUE(data.certificate->is_implicit);
       EXPECT_TRUE(data.certificate->has_canonical_form);
-      EXPECT_TRUE(data.certificate->MaySignFor(0x20));
+      EXPECT_TRUE(data.certificate->psids.Has(0x20));
     }
   }
   EXPECT_EQ(bsms, 803);
@@ -71,15 +71,15 @@ TEST(ReadDot2, RealCertificateOfARoadSideUnitIsReadToItsEnd) {
   EXPECT_EQ(data.generation_us, 637434485748149u);
   ASSERT_TRUE(data.certificate);
   const Certificate& certificate = *data.certificate;
-  EXPECT_EQ(ToHex(certificate.issuer_digest), "c620fb90caad3b9c");
+  EXPECT_EQ(HexText(certificate.issuer_digest), "c620fb90caad3b9c");
   EXPECT_EQ(certificate.valid_from_s, 637007767u);
   EXPECT_EQ(certificate.valid_for_us, 10140ULL * 60 * 1000000);
-  ASSERT_EQ(certificate.psid_count, 7u);
-  EXPECT_EQ(certificate.psids[0], 2113685u);
-  EXPECT_EQ(certificate.psids[6], 128u);
+  ASSERT_EQ(certificate.psids.all().size(), 7u);
+  EXPECT_EQ(certificate.psids.all()[0], 2113685u);
+  EXPECT_EQ(certificate.psids.all()[6], 128u);
   EXPECT_EQ(certificate.key.form, CurvePoint::Form::kOdd);
-  EXPECT_EQ(ToHex(data.signature.r.x).substr(0, 8), "ffd5d7d4");
-  EXPECT_EQ(ToHex(data.signature.s).substr(0, 8), "f10d76bf");
+  EXPECT_EQ(HexText(data.signature.r.x).substr(0, 8), "ffd5d7d4");
+  EXPECT_EQ(HexText(data.signature.s).substr(0, 8), "f10d76bf");
 }
 
 TEST(ReadDot2, SignatureWithXOnlyIsRead) {
@@ -91,7 +91,7 @@ TEST(ReadDot2, SignatureWithXOnlyIsRead) {
   Dot2Data data;
   ASSERT_FALSE(ReadDot2(wsmp.payload, data));
   EXPECT_EQ(data.signature.r.form, CurvePoint::Form::kXOnly);
-  EXPECT_EQ(ToHex(data.signer_digest), "b2efb1bb38328c83");
+  EXPECT_EQ(HexText(data.signer_digest), "b2efb1bb38328c83");
 }
 
 TEST(ReadDot2, UnknownHeaderExtensionIsPassedOver) {
@@ -105,8 +105,8 @@ TEST(ReadDot2, UnknownHeaderExtensionIsPassedOver) {
   const Octets bytes = WrapSigned(payload, options);
   ASSERT_FALSE(ReadDot2(bytes, data));
   EXPECT_FALSE(data.security_fault) << FaultText(data.security_fault);
-  EXPECT_EQ(ToHex(data.payload), "0014");
-  EXPECT_EQ(ToHex(data.signer_digest), "0102030405060708");
+  EXPECT_EQ(HexText(data.payload), "0014");
+  EXPECT_EQ(HexText(data.signer_digest), "0102030405060708");
 }
 
 TEST(ReadDot2, HeaderThatCannotBeReadLeavesThePayload) {
@@ -117,7 +117,7 @@ TEST(ReadDot2, HeaderThatCannotBeReadLeavesThePayload) {
   const Octets bytes = WrapSigned(payload, options);
   ASSERT_FALSE(ReadDot2(bytes, data));
   EXPECT_TRUE(data.security_fault);
-  EXPECT_EQ(ToHex(data.payload), "0014");
+  EXPECT_EQ(HexText(data.payload), "0014");
 }
 
 TEST(ReadDot2, EncryptedRequestedAndNestedDataAreNamed) {

@@ -37,7 +37,7 @@ TEST(ReadWsmp, OptionsAreReadAndUnknownOnesPassedOver) {
   EXPECT_EQ(wsmp.channel, 180);
   EXPECT_EQ(wsmp.rate_500kbps, 12);
   EXPECT_EQ(wsmp.tx_power_raw, 0x93);
-  EXPECT_EQ(ToHex(wsmp.payload), ToHex(payload));
+  EXPECT_EQ(HexText(wsmp.payload), HexText(payload));
   EXPECT_EQ(wsmp.trailing, 0u);
 }
 

@@ -50,7 +50,7 @@ TEST(ReadBsm, PublishedPayloadsAreWrittenAgainAsTheyWere) {
     if (vector.has_frame_extensions) continue;  // Whose extensions are not kept.
     Bsm bsm;
     ASSERT_FALSE(ReadBsmFrame(vector.bytes, bsm));
-    EXPECT_EQ(ToHex(Encoded(bsm)), ToHex(vector.bytes));
+    EXPECT_EQ(HexText(Encoded(bsm)), HexText(vector.bytes));
     ++same;
   }
   EXPECT_EQ(same, 166);

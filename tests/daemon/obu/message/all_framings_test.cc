@@ -214,11 +214,11 @@ TEST(AllFramings, OfACamGiveOneAndTheSameMessage) {
     Octets scratch(kLongestDatagram);
     Datagram datagram;
     ReadDatagram(bytes, {}, scratch, datagram);
-    ASSERT_FALSE(datagram.fault) << FaultText(datagram.fault) << ToHex(bytes);
+    ASSERT_FALSE(datagram.fault) << FaultText(datagram.fault) << HexText(bytes);
     bsm_t message = BsmMessage(datagram, {});
     message.secMark = 0;  // Known where an envelope tells the time.
     if (first.empty()) first = Essence(message);
-    EXPECT_EQ(Essence(message), first) << ToHex(bytes);
+    EXPECT_EQ(Essence(message), first) << HexText(bytes);
   }
 }
 

@@ -183,7 +183,7 @@ TEST(OwnBsm, WithoutAFreshFixThereIsNoMessage) {
   EXPECT_FALSE(own.Make(kNow));
   own.OnFix(Fix());
   EXPECT_TRUE(own.Make(kNow));
-  EXPECT_FALSE(own.Make(kNow + 1100000));
+  EXPECT_FALSE(own.Make(kNow + 1600000));
 }
 
 TEST(OwnBsm, CountGoesUpByOneAndIdentityChangesWithItsCount) {

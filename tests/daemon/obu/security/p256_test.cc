@@ -25,7 +25,7 @@ Hash HashOf(const Octets& bytes) {
 // FIPS 180-4, example of one block.
 TEST(Sha256Of, AgreesWithTheStandard) {
   const Octets a = {'a'}, bc = {'b', 'c'};
-  EXPECT_EQ(ToHex(Sha256Of({a, bc})),
+  EXPECT_EQ(HexText(Sha256Of({a, bc})),
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 

@@ -54,7 +54,7 @@ TEST(Verifier, ImplicitCertificateUnderAConfiguredRootIsValid) {
   const Judgement heard = ear.Hear(SignedBy(authority.car, Payload(1), kNow_us, true));
   EXPECT_EQ(heard.finding, SignatureFinding::kVerified);
   EXPECT_EQ(heard.signature_state(), 1);
-  EXPECT_EQ(ToHex(heard.digest), ToHex(TestDigest(authority.car)));
+  EXPECT_EQ(HexText(heard.digest), HexText(TestDigest(authority.car)));
   // By digest now, and in the form that tells only x.
   EXPECT_EQ(ear.Hear(SignedBy(authority.car, Payload(2), kNow_us, false)).signature_state(), 1);
   EXPECT_EQ(
@@ -211,7 +211,7 @@ TEST(Verifier, RealUnitsAreConsistentThroughoutAndFlippedBitsAreNot) {
     ASSERT_TRUE(datagram.dot2);
     const Judgement judgement = verifier.Judge(*datagram.dot2, record.log_utime);
     ++findings[std::string(FindingName(judgement.finding))];
-    EXPECT_EQ(ToHex(judgement.digest), record.digest);
+    EXPECT_EQ(HexText(judgement.digest), record.digest);
     EXPECT_EQ(judgement.signature_state(), 0);
   }
   int flipped_heard = 0, flipped_consistent = 0;

@@ -82,7 +82,7 @@ TEST(V2vouchObu, UnitsLogsAsHexLinesGiveTheirValuesInJson) {
   V2VOUCH_NEEDS_OBU_DATA();
   std::string text;
   const auto records = UnitRecords();
-  for (const UnitRecord& record : records) text += ToHex(record.bytes) + "\n";
+  for (const UnitRecord& record : records) text += HexText(record.bytes) + "\n";
   const auto objects = Objects(Written("units.hex", text));
   ASSERT_EQ(objects.size(), records.size());
   int bsms = 0;
@@ -109,7 +109,7 @@ TEST(V2vouchObu, RejectsAreObjectsWithAReason) {
   int lines = 0;
   for (const BsmReject& reject : BsmRejects()) {
     if (reject.bytes.empty()) continue;  // An empty line is no datagram.
-    text += ToHex(reject.bytes) + "\n";
+    text += HexText(reject.bytes) + "\n";
     ++lines;
   }
   text += "this is no hex\n00142\n";
@@ -174,12 +174,12 @@ TEST(V2vouchObu, SignaturesAreCheckedUpToTheGivenRoots) {
       FromHex("001425067c0eb5842562e66e8a2b9ea6c96408b97fffffff900027d9637d07d0007fff8000640fa0");
   std::string lines;
   for (int i = 0; i < 3; ++i) {
-    lines += ToHex(SignedBy(car, frame, 700000000000000, i == 0)) + "\n";
+    lines += HexText(SignedBy(car, frame, 700000000000000, i == 0)) + "\n";
   }
-  lines += ToHex(SignedBy(forger, frame, 700000000000000, false)) + "\n";
+  lines += HexText(SignedBy(forger, frame, 700000000000000, false)) + "\n";
   const std::string path = Written("signed.hex", lines);
   Written("roots/root.coer", std::string(root.bytes.begin(), root.bytes.end()));
-  Written("issuers/pca.hex", ToHex(issuer.bytes));
+  Written("issuers/pca.hex", HexText(issuer.bytes));
   const std::string folder = testing::TempDir() + "v2vouch_obu_";
   const auto states = [&](const std::string& more) {
     std::vector<int> found;

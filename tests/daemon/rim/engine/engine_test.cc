@@ -173,6 +173,31 @@ TEST(Engine, LocalIsTheSameBitForBitWithoutBsmsAndGnss) {
   EXPECT_EQ(with.digest_local, without.digest_local);
 }
 
+// A gateway tells on OWN_BSM what it sends; every BSM under such an id is an echo.
+TEST(Engine, WhatThisCarItselfSendsIsCountedAsAnEchoAndIsNoSender) {
+  std::vector<WireMessage> messages;
+  std::uint64_t bsms = 0;
+  for (const WireMessage& message : Messages()) {
+    if (message.channel == "BSM") {
+      messages.push_back(message);
+      messages.back().channel = "OWN_BSM";
+      ++bsms;
+    }
+    messages.push_back(message);
+  }
+  ASSERT_GT(bsms, 0);
+  const Published run = RunAll(messages);
+  EXPECT_EQ(CountOf(run, Reason::kBsmOwnEcho), bsms);
+  EXPECT_EQ(run.digest_local, RunAll(Messages()).digest_local);
+  for (const char* channel : {"TRACKS_V2V", "TRACKS_PRIORITY"}) {
+    for (const auto& bytes : run.published.at(channel)) {
+      const auto list = wire::Decode<track_list_t>(bytes);
+      ASSERT_TRUE(list);
+      EXPECT_EQ(list->num_tracks, 0) << channel;
+    }
+  }
+}
+
 TEST(Engine, RefusedMessagesAreCountedByReasonAndChangeNothing) {
   std::vector<WireMessage> messages;
   for (const WireMessage& message : Messages()) {
