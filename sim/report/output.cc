@@ -7,6 +7,7 @@
 #include "sim/behaviour/evaluation.h"
 #include "sim/plot/svg.h"
 #include "sim/report/behaviour_text.h"
+#include "sim/report/scorecard_text.h"
 
 namespace v2vouch::evaluation {
 namespace {
@@ -144,6 +145,7 @@ std::string ToJson(const Evaluation& evaluation, const Evaluation* paper) {
   json["hidden"] = UnseenJson(evaluation.hidden);
   json["out_of_view"] = UnseenJson(evaluation.out_of_view);
   json["behaviour"] = BehaviourJson(evaluation.behaviour);
+  json["scorecard"] = ScorecardJson(evaluation.scorecards);
   json["validated_share"] = Rounded(evaluation.validated_share);
   json["hold_s"] = Json::object();
   for (const auto& [id, seconds] : evaluation.hold_s) {
@@ -221,6 +223,7 @@ std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
            AneesText(score->out_of_view) + "\n";
   }
   out += BehaviourTable(evaluation.behaviour);
+  out += ScorecardTable(evaluation.scorecards);
   out += Line("T-GOSPA per instant: LOCAL %s, PRIORITY %s%s\n",
               Fixed(local.trajectory_per_step, 3).c_str(),
               Fixed(priority.trajectory_per_step, 3).c_str(),

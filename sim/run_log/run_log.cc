@@ -103,6 +103,7 @@ class Reader {
       out.object_class = track.object_class;
       out.sender = SenderFrom(track.v2v_id);
       out.start = FromMicros(track.start_utime);
+      out.last_hit = FromMicros(std::max(track.last_radar_utime, track.last_camera_utime));
       out.visibility = track.visibility;
       out.trust = track.trust_state;
       out.bridge_budget_s = track.bridge_budget_s;

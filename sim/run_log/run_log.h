@@ -34,6 +34,7 @@ struct ListedTrack {
   int object_class = 0;
   std::uint32_t sender = 0;
   Timestamp start{};             ///< When the track began.
+  Timestamp last_hit{};          ///< By an own sensor; 1970 = never.
   int visibility = 0;            ///< Constants of track_t: visible, hidden, out of view.
   int trust = 0;                 ///< Constants of track_t; of the sender, where there is one.
   double bridge_budget_s = 0.0;  ///< Of PRIORITY; NaN elsewhere.
