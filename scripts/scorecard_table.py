@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-EVALUATOR_BIN = ROOT / "build" / "release" / "bin"
+BIN = ROOT / "build" / "release" / "bin"
 
 
 def run(command):
@@ -57,6 +57,18 @@ def replay_and_score(log, vehicle, replayer, evaluator, folder, settings=()):
     result["realtime_factor"] = replay.get("realtime_factor")
     out.unlink()
     return result
+
+
+DEVELOPMENT, REPORTING = 1000, 9000  # First seeds; reporting ones are for figures that are published.
+
+
+def simulate(scenario, seed, family, folder, tools, duration=None):
+    """A log with a sensor family, and the vehicle file that fits it."""
+    log, vehicle = folder / "in.lcm", folder / "drawn.yaml"
+    command = [tools / "v2vouch-sim", "run", scenario, "--seed", seed, "--sensors", family, "--out", log,
+               "--vehicle-out", vehicle]
+    run(command + (["--duration", duration] if duration else []))
+    return log, vehicle
 
 
 def pick(*path):
@@ -126,21 +138,43 @@ def worst_of(values, more_is_worse):
     return max(known) if more_is_worse else min(known)
 
 
-def table(rows, kind, first, columns):
+def line(name, values, columns):
+    return f"| {name} | " + " | ".join(
+        cell(value, column[2]) for value, column in zip(values, columns)) + " |"
+
+
+def worst_row(rows, columns):
+    return [worst_of([row[i] for row in rows], column[3]) for i, column in enumerate(columns)]
+
+
+def table(values, first, columns, has_worst=True):
+    """Markdown of {name: values}; the worst of each column last."""
     lines = [f"| {first} | " + " | ".join(title for title, *_ in columns) + " |",
              "|---" * (len(columns) + 1) + "|"]
-    values = {name: [value(row["scorecard"][kind]) for _, value, *_ in columns]
-              for name, row in rows.items()}
-    for name, row in values.items():
-        lines.append(f"| {name} | " + " | ".join(
-            cell(value, column[2]) for value, column in zip(row, columns)) + " |")
-    worst = [worst_of([row[i] for row in values.values()], column[3])
-             for i, column in enumerate(columns)]
-    lines.append("| **worst** | " + " | ".join(
-        cell(value, column[2]) for value, column in zip(worst, columns)) + " |")
+    lines += [line(name, row, columns) for name, row in values.items()]
+    if has_worst:
+        lines.append(line("**worst**", worst_row(list(values.values()), columns), columns))
     return "\n".join(lines)
 
 
+def values_of(result, kind, columns):
+    return [value(result["scorecard"][kind]) for _, value, *_ in columns]
+
+
 def print_tables(rows, first):
-    print("LOCAL\n\n" + table(rows, "local", first, SHARED) + "\n")
-    print("PRIORITY\n\n" + table(rows, "priority", first, SHARED + PRIORITY))
+    """Both lists' tables of {name: result}."""
+    for kind, columns in (("local", SHARED), ("priority", SHARED + PRIORITY)):
+        values = {name: values_of(row, kind, columns) for name, row in rows.items()}
+        print(f"{kind.upper()}\n\n" + table(values, first, columns) + "\n")
+
+
+def print_worst_tables(groups, first):
+    """Both lists' tables of {group: {name: result}}: each group's worst, the worst group first."""
+    def order(group):
+        rms = worst_of([SHARED[0][1](row["scorecard"]["local"]) for row in groups[group].values()], True)
+        return -(rms or 0.0)
+
+    for kind, columns in (("local", SHARED), ("priority", SHARED + PRIORITY)):
+        values = {group: worst_row([values_of(row, kind, columns) for row in groups[group].values()], columns)
+                  for group in sorted(groups, key=order)}
+        print(f"{kind.upper()}\n\n" + table(values, first, columns) + "\n")
