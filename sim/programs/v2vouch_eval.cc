@@ -124,6 +124,7 @@ int PrintScorecards(const v2vouch::evaluation::RunLog& log,
 struct Options {
   std::string log_path, paper_path, report_folder, lcm_url;
   v2vouch::evaluation::ScoringSettings settings;
+  std::vector<std::string> joined;
   bool scorecard = false;
   bool as_json = false, summary = false, use_gates = false, spoof = false, message_checks = false;
 };
@@ -145,6 +146,10 @@ void AddOptions(CLI::App& app, Options& options) {
                "Counts and lengths of the lists only; needs no truth");
   app.add_flag("--scorecard", options.scorecard,
                "The scorecards of LOCAL and PRIORITY only: no bound, a tenth of the time");
+  app.add_option(
+      "--join", options.joined,
+      "Further runs of the same drive whose LOCAL tracks are added (the ladder's vehicles "
+      "alone)");
   app.add_flag("--gates", options.use_gates, "Exit code 1 when a gate is missed");
   auto* of_spoof =
       app.add_flag("--spoof", options.spoof, "Spoof resistance instead of tracking accuracy");
@@ -171,6 +176,11 @@ int main(int argc, char** argv) {
   if (options.spoof) return JudgeLies(log_path, options.message_checks, options.as_json);
   RunLog log;
   if (!Load(log_path, log)) return kFailed;
+  for (std::size_t k = 0; k < options.joined.size(); ++k) {
+    RunLog other;
+    if (!Load(options.joined[k], other)) return kFailed;
+    JoinLocal(other, static_cast<int>(k + 1), log);
+  }
   if (options.summary) return PrintSummary(log_path, log, options.as_json);
   if (const std::string why = WhyNotJudged(log); !why.empty()) {
     return Complain(log_path + ": " + why);

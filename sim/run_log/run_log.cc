@@ -357,6 +357,21 @@ std::string WhyNotJudged(const RunLog& log) {
          "; do both come from the same drive and clock?";
 }
 
+void JoinLocal(const RunLog& other, int run, RunLog& log) {
+  std::map<Timestamp, const ReceivedList*> last;  // Correction of each stamp.
+  const std::size_t local = Index(ListKind::kLocal);
+  for (const ReceivedList& list : other.lists[local]) last[list.stamp] = &list;
+  for (ReceivedList& list : log.lists[local]) {
+    const auto found = last.find(list.stamp);
+    if (found == last.end()) continue;
+    for (ListedTrack track : found->second->tracks) {
+      constexpr std::int64_t kSpread = 0x9E37'79B9'7F4A;
+      track.id ^= kSpread * run;
+      list.tracks.push_back(track);
+    }
+  }
+}
+
 const ReceivedList* NewestBy(const std::vector<ReceivedList>& lists, Timestamp t) {
   const auto after = std::upper_bound(
       lists.begin(), lists.end(), t,
