@@ -49,6 +49,7 @@ Json Common(const ListScore& score) {
 Json Full(const ListScore& score) {
   Json json = Common(score);
   json["has_lists"] = score.has_lists;
+  json["localisation_extended_ratio"] = Rounded(score.localisation_extended_ratio);
   json["false_per_instant"] = Rounded(score.false_per_instant());
   json["false_track_ids"] = score.false_track_ids;
   json["switch_halves"] = score.switch_halves;
@@ -212,6 +213,8 @@ std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
     out += Line("  %-4s %-30s %8s  (at most %g)\n", gate.passes() ? "ok" : "MISS",
                 gate.name.c_str(), Fixed(gate.value, 4).c_str(), gate.limit);
   }
+  out += "\nLOCAL's localisation over the bound of extended vehicles of unknown size: " +
+         Fixed(local.localisation_extended_ratio, 3);
   out += "\nin PRIORITY while hidden: " + UnseenText(evaluation.hidden) +
          "\nin PRIORITY while out of view: " + UnseenText(evaluation.out_of_view) +
          "\nvalidated share " + WithUnit(100.0 * evaluation.validated_share, 1, " %") +
