@@ -120,6 +120,11 @@ std::unique_ptr<Evaluation> Evaluate(RunLog log, const ScoringSettings& settings
   evaluation->behaviour.local = behaviour_of(ListKind::kLocal);
   evaluation->behaviour.priority = behaviour_of(ListKind::kPriority);
   evaluation->behaviour.confirmation = JudgeConfirmation(evaluation->log, settings);
+  ScorecardSettings card;
+  card.cutoff_m = settings.cutoff_m;
+  card.radius_m = settings.radius_m;
+  card.skip_s = settings.skip_s;
+  evaluation->scorecards = JudgeScorecards(evaluation->log, card);
   evaluation->misses = ExplainMisses(
       evaluation->log, evaluation->grid, *evaluation->bound, evaluation->headline(ListKind::kLocal),
       evaluation->headline(ListKind::kPriority), evaluation->settings);

@@ -9,6 +9,7 @@
 #include "sim/behaviour/behaviour.h"
 #include "sim/behaviour/misses.h"
 #include "sim/metrics/scoring.h"
+#include "sim/scorecard/scorecard.h"
 
 namespace v2vouch::evaluation {
 
@@ -47,6 +48,7 @@ struct Evaluation {
   UnseenError hidden;                 ///< Behind something.
   UnseenError out_of_view;            ///< Where no sensor looks.
   Behaviour behaviour;
+  Scorecards scorecards;
   std::vector<Miss> misses;               ///< Of PRIORITY, while the bound holds the vehicle.
   double validated_share = 0.0;           ///< Of the time PRIORITY could hold honest V2V cars.
   std::map<std::int64_t, double> hold_s;  ///< Per V2V vehicle: seconds in PRIORITY.

@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "sim/metrics/extended_filter.h"
 #include "sim/metrics/information_filter.h"
 #include "sim/metrics/sight.h"
 
@@ -54,6 +55,7 @@ class Walk {
         object_(object),
         settings_(settings),
         local_(RealisedManoeuvre(object, settings), log.specs.sender),
+        extended_(RealisedManoeuvre(object, settings), SizePriorOf(object.object_class)),
         fused_(local_),
         heard_(local_) {
     for (const TruthSample& sample : object.motion.samples()) {
@@ -70,6 +72,7 @@ class Walk {
     const double p = DetectionProbability(*sample, sensor);
     if (p <= 0.0) return;
     local_.AddSensor(sensor, *ego, *target, p);
+    extended_.AddSensor(sensor, *ego, *target, object_.length_m, object_.width_m, p);
     fused_.AddSensor(sensor, *ego, *target, p);
     looks_ += p;
     // A standing radar return starts no LOCAL track by itself: it may be a post.
@@ -102,6 +105,7 @@ class Walk {
     }
     is_present_ = true;
     for (auto* filter : {&local_, &fused_, &heard_}) filter->Apply();
+    extended_.Apply();
     FinishLocal(t, *cells[Index(ListKind::kLocal)]);
     FinishPriority(t, dt_s, *cells[Index(ListKind::kPriority)]);
     FinishV2v(*cells[Index(ListKind::kV2v)]);
@@ -112,6 +116,7 @@ class Walk {
   void Advance(double dt_s) {
     if (!is_present_) return;
     for (auto* filter : {&local_, &fused_, &heard_}) filter->Predict(dt_s, pending_yaw_rad_);
+    extended_.Predict(dt_s, pending_yaw_rad_);
   }
 
  private:
@@ -136,10 +141,12 @@ class Walk {
       is_local_ = is_plain_ = false;
       looks_ = starting_looks_ = 0.0;
       local_.Reset();
+      extended_.Reset();
     }
     cell.is_held = is_local_;
     cell.is_held_plain = is_plain_;
     cell.variance_m2 = local_.position_variance_m2();
+    cell.extended_variance_m2 = extended_.position_variance_m2();
   }
 
   void FinishPriority(Timestamp t, double dt_s, BoundCell& cell) {
@@ -179,6 +186,7 @@ class Walk {
 
   void Restart() {
     for (auto* filter : {&local_, &fused_, &heard_}) filter->Reset();
+    extended_.Reset();
     looks_ = starting_looks_ = 0.0;
     messages_ = 0;
     is_plain_ = is_local_ = is_known_ = cell_begun_ = false;
@@ -189,7 +197,9 @@ class Walk {
   const RunLog& log_;
   const TruthObject& object_;
   const BoundSettings& settings_;
-  InformationFilter local_, fused_, heard_;
+  InformationFilter local_;
+  ExtendedFilter extended_;
+  InformationFilter fused_, heard_;
   std::set<std::uint32_t> senders_;
   bool is_present_ = false;
   double pending_yaw_rad_ = 0.0;

@@ -15,6 +15,8 @@ struct BoundCell {
   /// By the plain rule: LOCAL from the second look of any sensor, PRIORITY without validation time.
   bool is_held_plain = false;
   double variance_m2 = 0.0;  ///< E |position error|^2 of an unbiased estimate; where held.
+  /// LOCAL: the same for a vehicle of unknown size, by ExtendedFilter.
+  double extended_variance_m2 = 0.0;
 };
 
 struct BoundSettings {
@@ -41,7 +43,8 @@ struct BoundSettings {
 /// frame that reached the log, with its true detection probability from TRUTH (0 where hidden), the
 /// scenario's sigmas for one reflection, one reflection per look, reference point known, ego pose
 /// exact; a frame's age at arrival is neglected. So for extended cars this is the bound of point
-/// targets with the reflections' noise. PRIORITY adds the BSMs that arrived: position with constant
+/// targets with the reflections' noise; beside it stands that of extended vehicles of unknown size
+/// (extended_filter.h). PRIORITY adds the BSMs that arrived: position with constant
 /// and Gauss-Markov bias states, speed and heading with error states, acceleration and yaw rate;
 /// V2V has these alone.
 ///

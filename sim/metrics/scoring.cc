@@ -142,6 +142,8 @@ class Scorer {
     score_.localisation_all_rms_m = rms(all_sum_, static_cast<std::int64_t>(score_.pairs.size()));
     score_.localisation_ratio =
         bounded_variance_ > 0.0 ? std::sqrt(bounded_sum_ / bounded_variance_) : kNoValue;
+    score_.localisation_extended_ratio =
+        bounded_extended_ > 0.0 ? std::sqrt(bounded_sum_ / bounded_extended_) : kNoValue;
     for (const Sighting sighting : {Sighting::kVisible, Sighting::kHidden, Sighting::kOutOfView}) {
       SetBand(score_.pairs, sighting, AneesOf(sighting));
     }
@@ -214,6 +216,7 @@ class Scorer {
     if (!cell.is_held) return;
     bounded_sum_ += error * error;
     bounded_variance_ += cell.variance_m2;
+    bounded_extended_ += cell.extended_variance_m2;
   }
 
   void TakeBound(std::size_t k, const PlacedTruth& truth, bool is_matched, InstantScore& now,
@@ -297,6 +300,7 @@ class Scorer {
   double all_sum_ = 0.0;
   double bounded_sum_ = 0.0;
   double bounded_variance_ = 0.0;
+  double bounded_extended_ = 0.0;
   std::int64_t visible_count_ = 0;
   std::set<std::int64_t> false_ids_;
   std::map<std::int64_t, std::int64_t> last_track_;

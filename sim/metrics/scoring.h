@@ -109,6 +109,8 @@ struct ListScore {
   double excess_missed_share_plain = 0.0;    ///< The same for the plain bound.
   double localisation_rms_m = 0.0;           ///< Visible vehicles only (V2V: all).
   double localisation_ratio = 0.0;           ///< Over the bound's RMS for the same pairs.
+  /// LOCAL: over the bound's RMS for extended vehicles of unknown size, same pairs.
+  double localisation_extended_ratio = kNoValue;
   double localisation_all_rms_m = 0.0;
   Anees visible, hidden, out_of_view;  ///< By the vehicle's true sighting.
   TrajectoryGospaResult trajectory;

@@ -12,6 +12,7 @@
 #include "sim/annotation/annotate_log.h"
 #include "sim/behaviour/evaluation.h"
 #include "sim/report/report.h"
+#include "sim/report/scorecard_text.h"
 #include "sim/spoofing/spoof_json.h"
 
 namespace {
@@ -29,6 +30,8 @@ constexpr const char* kExamples =
     "  v2vouch-eval OUT.lcm --spoof                how lies fared, and the honest; wants "
     "TRUTH_BSM\n"
     "                                              and `v2v.message_verdicts: true` in the replay\n"
+    "  v2vouch-eval OUT.lcm --scorecard --json     errors by kind, lead vehicle, first listing; "
+    "quick\n"
     "  v2vouch-eval drive.lcm --summary            a real drive: counts, no truth needed\n"
     "\n"
     "Exit codes: 0 good; 1 the log cannot be read or judged (no TRUTH, no lists, no overlap, a "
@@ -109,9 +112,21 @@ int PrintSummary(const std::string& path, const v2vouch::evaluation::RunLog& log
   return Complain(path + ": holds no track lists; `v2vouch-replay LOG --out OUT` makes them");
 }
 
+int PrintScorecards(const v2vouch::evaluation::RunLog& log,
+                    const v2vouch::evaluation::ScoringSettings& settings, bool as_json) {
+  using namespace v2vouch::evaluation;
+  ScorecardSettings card;
+  card.cutoff_m = settings.cutoff_m;
+  const Scorecards cards = JudgeScorecards(log, card);
+  std::fputs((as_json ? ScorecardFileJson(log, cards) : ScorecardTable(cards)).c_str(), stdout);
+  return kGood;
+}
+
 struct Options {
   std::string log_path, paper_path, report_folder, lcm_url;
   v2vouch::evaluation::ScoringSettings settings;
+  std::vector<std::string> joined;
+  bool scorecard = false;
   bool as_json = false, summary = false, use_gates = false, spoof = false, message_checks = false;
 };
 
@@ -130,6 +145,12 @@ void AddOptions(CLI::App& app, Options& options) {
   app.add_flag("--json", options.as_json, "Figures as JSON on standard output");
   app.add_flag("--summary", options.summary,
                "Counts and lengths of the lists only; needs no truth");
+  app.add_flag("--scorecard", options.scorecard,
+               "The scorecards of LOCAL and PRIORITY only: no bound, a tenth of the time");
+  app.add_option(
+      "--join", options.joined,
+      "Further runs of the same drive whose LOCAL tracks are added (the ladder's vehicles "
+      "alone)");
   app.add_flag("--gates", options.use_gates, "Exit code 1 when a gate is missed");
   auto* of_spoof =
       app.add_flag("--spoof", options.spoof, "Spoof resistance instead of tracking accuracy");
@@ -156,10 +177,16 @@ int main(int argc, char** argv) {
   if (options.spoof) return JudgeLies(log_path, options.message_checks, options.as_json);
   RunLog log;
   if (!Load(log_path, log)) return kFailed;
+  for (std::size_t k = 0; k < options.joined.size(); ++k) {
+    RunLog other;
+    if (!Load(options.joined[k], other)) return kFailed;
+    JoinLocal(other, static_cast<int>(k + 1), log);
+  }
   if (options.summary) return PrintSummary(log_path, log, options.as_json);
   if (const std::string why = WhyNotJudged(log); !why.empty()) {
     return Complain(log_path + ": " + why);
   }
+  if (options.scorecard) return PrintScorecards(log, options.settings, options.as_json);
   const auto evaluation = Evaluate(std::move(log), options.settings);
   std::unique_ptr<Evaluation> paper;
   if (!options.paper_path.empty()) {

@@ -10,6 +10,7 @@
 #include "daemon/rim/program/command_line.h"
 #include "sim/programs/shipped_files.h"
 #include "sim/programs/v2vouch_sim_run.h"
+#include "sim/world/draw_sensors.h"
 #include "sim/world/overlay.h"
 #include "sim/world/scenario.h"
 
@@ -22,6 +23,7 @@ constexpr const char* kExamples = R"(Examples:
   v2vouch-sim list
   v2vouch-sim run left_turn --seed 1 --out left_turn.lcm
   v2vouch-sim run left_turn --seed 1 --sensors ideal_points --out ideal.lcm
+  v2vouch-sim run urban --seed 3 --sensors random --out drive.lcm --vehicle-out drive.yaml
   v2vouch-sim run my_scenario.yaml --seed 7 --set radio.base_loss=0.5 --out lossy.lcm
   v2vouch-sim run campaign_urban --seed 1 --with my_attack.yaml --set traffic.vehicles=20 --out a.lcm
   v2vouch-sim run urban --seed 1 --live -l 'udpm://239.255.76.67:7667?ttl=0'
@@ -29,6 +31,12 @@ constexpr const char* kExamples = R"(Examples:
 The same scenario and seed give the same events, live or not. Scenarios are documented YAML; the
 shipped left_turn.yaml explains every section.
 Exit codes: 0 good, 1 the log or the LCM bus failed, 2 usage or scenario.)";
+
+std::vector<std::string> SensorModes() {
+  std::vector<std::string> modes = {"realistic", "ideal_points"};
+  for (std::string& family : DrawnFamilies()) modes.push_back(std::move(family));
+  return modes;
+}
 
 int List(bool as_json) {
   std::vector<std::string> problems;
@@ -102,7 +110,9 @@ int main(int argc, char** argv) {
   run->add_option("--duration", options.duration_s, "Stop after this many seconds of the scenario")
       ->check(CLI::PositiveNumber);
   run->add_option("--sensors", sensors, "Instead of the scenario's own sensors.mode")
-      ->check(v2vouch::OneOf({"realistic", "ideal_points"}));
+      ->check(v2vouch::OneOf(SensorModes()));
+  run->add_option("--vehicle-out", options.vehicle_out,
+                  "Write the ego's configuration for the daemon, what is drawn included");
   run->add_option("--set", options.settings, "KEY=VALUE, a scenario setting; may be repeated");
   run->add_option(
       "--with", overlays,

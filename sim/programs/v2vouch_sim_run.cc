@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <thread>
 
 #include "daemon/rim/config/yaml_reader.h"
+#include "daemon/rim/config/yaml_writer.h"
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/io/stop_signal.h"
 #include "sim/simulation/simulation.h"
@@ -124,6 +126,22 @@ std::unique_ptr<Sink> OpenSink(const RunOptions& options, std::string& error) {
   return nullptr;
 }
 
+struct VehicleFile {
+  VehicleConfig vehicle;
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("vehicle", vehicle);
+  }
+};
+
+bool WriteVehicle(const Scenario& scenario, const std::string& path, std::string& error) {
+  std::ofstream file(path);
+  file << config::Print(VehicleFile{scenario.vehicle});
+  file.close();
+  if (!file) error = path + ": cannot be written";
+  return static_cast<bool>(file);
+}
+
 }  // namespace
 
 struct Figures {
@@ -160,6 +178,11 @@ int Run(const RunOptions& options) {
     return kUsage;
   }
   std::string error;
+  if (!options.vehicle_out.empty() &&
+      !WriteVehicle(world->scenario(), options.vehicle_out, error)) {
+    Complain(error);
+    return kFailed;
+  }
   const auto sink = OpenSink(options, error);
   if (!sink) {
     Complain(error);

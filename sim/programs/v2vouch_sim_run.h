@@ -12,6 +12,7 @@ struct RunOptions {
   std::vector<std::string> overlays;  ///< Files laid over it, in order.
   std::uint64_t seed = 1;
   std::string out;                    ///< Log to write; empty with `live`.
+  std::string vehicle_out;            ///< Configuration file to write for the daemon; empty = none.
   bool live = false;                  ///< Over LCM in real time.
   std::string lcm_url;                ///< Empty: LCM_DEFAULT_URL, then LCM's own default.
   double duration_s = 0.0;            ///< 0 = the scenario's own.

@@ -7,6 +7,7 @@
 #include "sim/behaviour/evaluation.h"
 #include "sim/plot/svg.h"
 #include "sim/report/behaviour_text.h"
+#include "sim/report/scorecard_text.h"
 
 namespace v2vouch::evaluation {
 namespace {
@@ -48,6 +49,7 @@ Json Common(const ListScore& score) {
 Json Full(const ListScore& score) {
   Json json = Common(score);
   json["has_lists"] = score.has_lists;
+  json["localisation_extended_ratio"] = Rounded(score.localisation_extended_ratio);
   json["false_per_instant"] = Rounded(score.false_per_instant());
   json["false_track_ids"] = score.false_track_ids;
   json["switch_halves"] = score.switch_halves;
@@ -144,6 +146,7 @@ std::string ToJson(const Evaluation& evaluation, const Evaluation* paper) {
   json["hidden"] = UnseenJson(evaluation.hidden);
   json["out_of_view"] = UnseenJson(evaluation.out_of_view);
   json["behaviour"] = BehaviourJson(evaluation.behaviour);
+  json["scorecard"] = ScorecardJson(evaluation.scorecards);
   json["validated_share"] = Rounded(evaluation.validated_share);
   json["hold_s"] = Json::object();
   for (const auto& [id, seconds] : evaluation.hold_s) {
@@ -210,6 +213,8 @@ std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
     out += Line("  %-4s %-30s %8s  (at most %g)\n", gate.passes() ? "ok" : "MISS",
                 gate.name.c_str(), Fixed(gate.value, 4).c_str(), gate.limit);
   }
+  out += "\nLOCAL's localisation over the bound of extended vehicles of unknown size: " +
+         Fixed(local.localisation_extended_ratio, 3);
   out += "\nin PRIORITY while hidden: " + UnseenText(evaluation.hidden) +
          "\nin PRIORITY while out of view: " + UnseenText(evaluation.out_of_view) +
          "\nvalidated share " + WithUnit(100.0 * evaluation.validated_share, 1, " %") +
@@ -221,6 +226,7 @@ std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
            AneesText(score->out_of_view) + "\n";
   }
   out += BehaviourTable(evaluation.behaviour);
+  out += ScorecardTable(evaluation.scorecards);
   out += Line("T-GOSPA per instant: LOCAL %s, PRIORITY %s%s\n",
               Fixed(local.trajectory_per_step, 3).c_str(),
               Fixed(priority.trajectory_per_step, 3).c_str(),

@@ -35,6 +35,7 @@ struct ListedTrack {
   int object_class = 0;
   std::uint32_t sender = 0;
   Timestamp start{};             ///< When the track began.
+  Timestamp last_hit{};          ///< By an own sensor; 1970 = never.
   int visibility = 0;            ///< Constants of track_t: visible, hidden, out of view.
   int trust = 0;                 ///< Constants of track_t; of the sender, where there is one.
   double bridge_budget_s = 0.0;  ///< Of PRIORITY; NaN elsewhere.
@@ -146,6 +147,10 @@ enum class ReadScope {
 /// @return false with `error` set when the file cannot be read.
 bool ReadRunLog(const std::string& path, const std::function<void(double)>& progress, RunLog& log,
                 std::string& error, ReadScope scope = ReadScope::kAll);
+
+/// Adds the LOCAL tracks of another run of the same drive to the lists of `log` with the same stamp;
+/// their ids are made distinct by `run`, above 0.
+void JoinLocal(const RunLog& other, int run, RunLog& log);
 
 /// The newest list received by `t`, or null.
 const ReceivedList* NewestBy(const std::vector<ReceivedList>& lists, Timestamp t);

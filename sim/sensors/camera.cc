@@ -91,6 +91,9 @@ CameraSimulator::CameraSimulator(const World& world, int index, std::uint64_t se
       seed_(seed),
       skyline_(HalfSpan(camera_), kRay_rad) {
   camera_.detection_probability *= world.scenario().sensors.detection_scale;
+  if (const auto& family = world.scenario().family) {
+    family_.emplace(family->camera, index_, seed_);
+  }
 }
 
 Eigen::Vector3d CameraSimulator::ToBody(const EgoTruth& ego, const Vec2& point, double z_m) const {
@@ -261,6 +264,7 @@ void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
   picture.image_width_px = camera_.image_width_px;
   picture.image_height_px = camera_.image_height_px;
   picture.boxes.clear();
+  if (family_) return ShootFamily(snapshot, seq, picture);
   Random common = SubjectRandom(seed_, "camera", {index_, static_cast<std::uint64_t>(seq)});
   const double nod = common.Normal(0.0, sensors.noise_scale * camera_.pitch_sigma_rad);
   LookClosely(snapshot, nod, seen_);
@@ -283,6 +287,81 @@ void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
     for (int i = 0; i < count; ++i) picture.boxes.push_back(ClutterBox(common));
   }
   if (sensors.outlier_share > 0.0) Spoil(seq, picture);
+  picture.num_boxes = static_cast<std::int32_t>(picture.boxes.size());
+}
+
+// One box, or two side by side where the vehicle is split, and now and then one of them twice.
+void CameraSimulator::AddFamilyBoxes(const PixelBox& exact, const CameraFamily::Vehicle& vehicle,
+                                     ObjectClass object_class, Random& random,
+                                     camera_detections_t& picture) const {
+  const CameraFamilySpec& spec = world_.scenario().family->camera;
+  const double scale = world_.scenario().sensors.noise_scale;
+  const double size_px = std::max(exact.right - exact.left, exact.bottom - exact.top);
+  const double slow_px = std::hypot(spec.edge_markov_px, spec.edge_markov_share * size_px);
+  const auto add = [&](const std::array<double, 4>& edges) {
+    std::array<double, 4> noisy = edges;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double far = k % 2 == 0 ? camera_.image_width_px : camera_.image_height_px;
+      const double error = slow_px * vehicle.edge[k] + random.Normal(0.0, spec.edge_white_px);
+      const bool is_cut = edges[k] <= 0.0 || edges[k] >= far;
+      noisy[k] = std::clamp(edges[k] + (is_cut ? 0.0 : scale * error), 0.0, far);
+    }
+    camera_box_t box{};
+    box.left_px = noisy[0];
+    box.top_px = noisy[1];
+    box.width_px = noisy[2] - noisy[0];
+    box.height_px = noisy[3] - noisy[1];
+    if (box.width_px < 3.0 || box.height_px < 4.0) return;
+    box.score =
+        std::clamp(0.5 + 0.4 * std::min(1.0, box.height_px / 60.0) + random.Normal(0.0, 0.08),
+                   std::min(0.99, camera_.min_score + 0.02), 0.99);
+    SetClass(object_class, box);
+    picture.boxes.push_back(box);
+  };
+  if (!vehicle.is_split) {
+    add({exact.left, exact.top, exact.right, exact.bottom});
+  } else {
+    const double cut = exact.left + (exact.right - exact.left) * random.Uniform(0.4, 0.6);
+    add({exact.left, exact.top, cut, exact.bottom});
+    add({cut, exact.top, exact.right, exact.bottom});
+  }
+  if (random.Bernoulli(spec.duplicate_share)) {
+    const double by = 0.1 * (exact.right - exact.left);
+    add({exact.left + by, exact.top + 0.5 * by, exact.right + 0.5 * by, exact.bottom});
+  }
+}
+
+void CameraSimulator::ShootFamily(const Snapshot& snapshot, std::int64_t seq,
+                                  camera_detections_t& picture) {
+  const double nod = family_->Begin(snapshot.ego, snapshot.time_s, seq, HalfSpan(camera_));
+  LookClosely(snapshot, nod, seen_);
+  for (std::size_t i = 0; i < snapshot.actors.size(); ++i) {
+    const Seen& seen = seen_[i];
+    const ActorState& actor = snapshot.actors[i];
+    if (seen.sight.detection_probability <= 0.0) continue;
+    const CameraFamily::Vehicle& vehicle = family_->See(*actor.actor, seq);
+    Random random = SubjectRandom(seed_, "camera vehicle",
+                                  {index_, static_cast<std::uint64_t>(seq), actor.actor->id});
+    if (!random.Bernoulli(seen.sight.detection_probability) || vehicle.is_missed) continue;
+    PixelBox exact = seen.box;
+    if (vehicle.is_amodal) AddOutline(snapshot.ego, actor, nod, exact);
+    AddFamilyBoxes(exact, vehicle, vehicle.read_as, random, picture);
+  }
+  Random random =
+      SubjectRandom(seed_, "family false box", {index_, static_cast<std::uint64_t>(seq)});
+  for (const CameraFamily::FalseBox& box : family_->false_boxes()) {
+    const Vec2 across = LeftOf((box.place - snapshot.ego.axle).normalized()) * 0.5 * box.width_m;
+    PixelBox exact;
+    for (const double side : {1.0, -1.0}) {
+      for (const double z : {0.0, box.height_m}) {
+        const auto pixel =
+            Project(camera_, ToBody(snapshot.ego, box.place + side * across, z), nod);
+        if (pixel) exact.Add(*pixel);
+      }
+    }
+    if (exact.is_empty || exact.right < 3.0 || exact.left > camera_.image_width_px - 3.0) continue;
+    AddFamilyBoxes(exact, {}, box.object_class, random, picture);
+  }
   picture.num_boxes = static_cast<std::int32_t>(picture.boxes.size());
 }
 

@@ -7,6 +7,7 @@
 #include <v2vouch/camera_detections_t.hpp>
 #include <vector>
 
+#include "sim/sensors/camera_family.h"
 #include "sim/sensors/radar.h"
 #include "sim/sensors/skyline.h"
 #include "sim/world/world.h"
@@ -27,7 +28,8 @@ std::optional<Eigen::Vector2d> Project(const CameraConfig& camera, const Eigen::
 ///
 /// Ideal points: box 2 px wide and 2 px high whose bottom centre is the projected ground point
 /// under the vehicle's centre; bottom centre noise `edge_sigma_px` in each direction, common to
-/// both side edges, and body pitch; P as for ideal radar points.
+/// both side edges, and body pitch; P as for ideal radar points. Modes with a family: CameraFamily;
+/// P as in realistic mode.
 class CameraSimulator {
  public:
   CameraSimulator(const World& world, int index, std::uint64_t seed);
@@ -64,6 +66,9 @@ class CameraSimulator {
   [[nodiscard]] std::optional<camera_box_t> VehicleBox(const Seen& seen, ObjectClass object_class,
                                                        Random& random) const;
   [[nodiscard]] camera_box_t ClutterBox(Random& random) const;
+  void ShootFamily(const Snapshot& snapshot, std::int64_t seq, camera_detections_t& picture);
+  void AddFamilyBoxes(const PixelBox& exact, const CameraFamily::Vehicle& vehicle,
+                      ObjectClass object_class, Random& random, camera_detections_t& picture) const;
 
   void Spoil(std::int64_t seq, camera_detections_t& picture) const;
 
@@ -73,6 +78,7 @@ class CameraSimulator {
   std::uint64_t seed_;
   Skyline skyline_;
   std::vector<Seen> seen_;
+  std::optional<CameraFamily> family_;  ///< Of modes that have one.
 };
 
 }  // namespace v2vouch::sim

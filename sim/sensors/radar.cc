@@ -118,6 +118,9 @@ RadarSimulator::RadarSimulator(const World& world, int index, std::uint64_t seed
       mirrors_.emplace_back(a, b);
     }
   }
+  if (const auto& family = world.scenario().family) {
+    family_.emplace(family->radar, world.scenario().sensors.noise_scale, index_, seed_);
+  }
   for (const Vec2& pole : world.poles()) scatterers_.push_back({pole, Vec2::Zero(), 4.0, 0.95});
   for (const Rail& rail : world.rails()) {
     for (std::size_t i = 0; i < rail.points.size(); ++i) {
@@ -349,6 +352,15 @@ void RadarSimulator::Scan(const Snapshot& snapshot, std::int64_t seq, radar_scan
   scan.sensor = radar_.name;
   scan.detections.clear();
   Look(snapshot, sights_);
+  if (family_) {
+    family_->Scan(snapshot, seq,
+                  {radar_, antenna.place, antenna.velocity, antenna.yaw_rad, skyline_, open_rays_,
+                   scatterers_, mirrors_},
+                  scan);
+    if (world_.scenario().sensors.outlier_share > 0.0) Spoil(seq, scan);
+    scan.num_detections = static_cast<std::int32_t>(scan.detections.size());
+    return;
+  }
   AddVehicles(snapshot, seq, antenna, scan);
   const SensorsSpec& sensors = world_.scenario().sensors;
   const bool realistic = sensors.mode == SensorMode::kRealistic;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <v2vouch/radar_scan_t.hpp>
 #include <vector>
 
 #include "daemon/common/base/random.h"
+#include "sim/sensors/radar_family.h"
 #include "sim/sensors/skyline.h"
 #include "sim/world/world.h"
 
@@ -27,7 +29,8 @@ struct Sight {
 ///     P = detection_probability * R(range) * min(1, visible / 0.2)
 /// with R = 1 up to 70 % of the largest range, then falling to 0.6 at its end. Ideal points:
 /// P = detection_probability where half the silhouette or more is visible and the centre is within
-/// range and field of view, else 0; one detection at the centre.
+/// range and field of view, else 0; one detection at the centre. Modes with a family: RadarFamily;
+/// P as in realistic mode.
 class RadarSimulator {
  public:
   RadarSimulator(const World& world, int index, std::uint64_t seed);
@@ -40,13 +43,6 @@ class RadarSimulator {
   void Look(const Snapshot& snapshot, std::vector<Sight>& sights);
 
  private:
-  /// A fixed strong point of the scenery.
-  struct Scatterer {
-    Vec2 place;
-    Vec2 normal;  ///< Zero: seen from everywhere.
-    double rcs_dbsm;
-    double probability;
-  };
   struct Antenna {
     Vec2 place;
     Vec2 velocity;
@@ -75,6 +71,7 @@ class RadarSimulator {
   std::vector<std::pair<Vec2, Vec2>> mirrors_;  ///< Pieces of rails and facades.
   std::vector<Sight> sights_;
   std::vector<std::vector<int>> open_rays_;  ///< Per actor: rays that meet it first, within range.
+  std::optional<RadarFamily> family_;        ///< Of modes that have one.
 };
 
 }  // namespace v2vouch::sim

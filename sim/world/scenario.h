@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "daemon/common/data/vehicle.h"
 #include "sim/world/attack_spec.h"
 #include "sim/world/radio_specs.h"
+#include "sim/world/sensor_family.h"
 #include "sim/world/sensor_specs.h"
 #include "sim/world/traffic_spec.h"
 
@@ -283,6 +285,7 @@ struct Scenario {
       vehicle;  ///< The ego car: body and sensors, as the daemon's configuration has them.
   std::vector<MountingErrorSpec> mounting;  ///< Where they sit otherwise.
   SensorsSpec sensors;
+  std::optional<FamilySpec> family;  ///< Of modes other than realistic and ideal_points.
   BsmSpec bsm;
   RadioSpec radio;
   EgoGnssSpec gnss;
@@ -314,6 +317,7 @@ struct Scenario {
     a.Field("vehicle", vehicle);
     a.Field("mounting", mounting);
     a.Field("sensors", sensors);
+    a.Field("family", family);
     a.Field("bsm", bsm);
     a.Field("radio", radio);
     a.Field("gnss", gnss);

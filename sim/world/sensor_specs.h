@@ -14,6 +14,22 @@ namespace v2vouch::sim {
 enum class SensorMode {
   kRealistic,    ///< Extended targets, static returns, clutter, ghosts, box errors.
   kIdealPoints,  ///< One detection at each visible vehicle's centre; nothing else.
+  kCustom,       ///< By section `family`, as it is written.
+  // By a `family` and a sensor set-up drawn for each run; see draw_sensors.h.
+  kBumper,
+  kCorners,
+  kSparse,
+  kMerged,
+  kInside,
+  kFewFace,
+  kObjects,
+  kMultipath,
+  kRain,
+  kBoxes,
+  kOneRadar,
+  kNoCamera,
+  kNarrowCamera,
+  kRandom,
 };
 
 struct SensorsSpec {
@@ -38,7 +54,23 @@ struct SensorsSpec {
   template <class Archive>
   void Visit(Archive& a) {
     a.Choice("mode", mode,
-             {{"realistic", SensorMode::kRealistic}, {"ideal_points", SensorMode::kIdealPoints}});
+             {{"realistic", SensorMode::kRealistic},
+              {"ideal_points", SensorMode::kIdealPoints},
+              {"custom", SensorMode::kCustom},
+              {"bumper", SensorMode::kBumper},
+              {"corners", SensorMode::kCorners},
+              {"sparse", SensorMode::kSparse},
+              {"merged", SensorMode::kMerged},
+              {"inside", SensorMode::kInside},
+              {"few_face", SensorMode::kFewFace},
+              {"objects", SensorMode::kObjects},
+              {"multipath", SensorMode::kMultipath},
+              {"rain", SensorMode::kRain},
+              {"boxes", SensorMode::kBoxes},
+              {"one_radar", SensorMode::kOneRadar},
+              {"no_camera", SensorMode::kNoCamera},
+              {"narrow_camera", SensorMode::kNarrowCamera},
+              {"random", SensorMode::kRandom}});
     a.Field("noise_scale", noise_scale, {.at_least = 0.0, .at_most = 20.0});
     a.Field("clutter_scale", clutter_scale, {.at_least = 0.0, .at_most = 100.0});
     a.Field("ghost_scale", ghost_scale, {.at_least = 0.0, .at_most = 10.0});

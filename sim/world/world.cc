@@ -7,6 +7,7 @@
 #include <map>
 
 #include "daemon/common/base/random.h"
+#include "sim/world/draw_sensors.h"
 #include "sim/world/mounting.h"
 #include "sim/world/traffic.h"
 
@@ -147,9 +148,11 @@ Vec2 EgoTruth::VelocityAt(const Vec2& point) const {
 
 World::World(const Scenario& scenario) : scenario_(scenario), vehicle_(Mounted(scenario)) {}
 
-std::unique_ptr<World> World::Make(const Scenario& scenario, std::uint64_t seed,
+std::unique_ptr<World> World::Make(const Scenario& given, std::uint64_t seed,
                                    std::vector<std::string>& problems) {
   const std::size_t before = problems.size();
+  Scenario scenario = given;
+  DrawSensors(seed, scenario);
   std::unique_ptr<World> world(new World(scenario));
   const auto paths = MakePaths(scenario, problems);
   const auto recorded = LoadRecorded(scenario, problems);

@@ -57,8 +57,9 @@ struct Rail {
 /// Everything that is really there.
 class World {
  public:
+  /// Sensors of a family are drawn here (DrawSensors), so scenario() has them.
   /// @return nullptr with `problems` filled when a route cannot be driven or a file is bad.
-  static std::unique_ptr<World> Make(const Scenario& scenario, std::uint64_t seed,
+  static std::unique_ptr<World> Make(const Scenario& given, std::uint64_t seed,
                                      std::vector<std::string>& problems);
 
   [[nodiscard]] Snapshot At(double time_s) const;

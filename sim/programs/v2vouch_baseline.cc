@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// v2vouch-baseline: a log through the plain tracker of sim/baseline, to compare LOCAL with.
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "daemon/common/data/vehicle.h"
+#include "daemon/rim/config/yaml_reader.h"
+#include "daemon/rim/config/yaml_writer.h"
+#include "daemon/rim/io/std_streams.h"
+#include "daemon/rim/program/command_line.h"
+#include "sim/baseline/baseline_log.h"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+constexpr const char* kExamples =
+    "Example:\n"
+    "  v2vouch-baseline drive.lcm --config vehicle.yaml --out base.lcm\n"
+    "  v2vouch-eval base.lcm --scorecard\n"
+    "\nExit codes: 0 good; 1 a log cannot be read or written; 2 usage or configuration.";
+
+/// Of a vehicle file only this section is read; files with others are refused.
+struct VehicleFile {
+  v2vouch::VehicleConfig vehicle;
+  template <class Archive>
+  void Visit(Archive& a) {
+    a.Field("vehicle", vehicle);
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-baseline");
+  CLI::App app("Runs a log through a plain tracker: the floor that LOCAL must beat.");
+  app.footer(kExamples);
+  std::string in, config, out;
+  app.add_option("IN", in, "LCM log to read")->required();
+  app.add_option("--out", out, "LCM log to write: TRUTH and TRACKS_LOCAL")->required();
+  app.add_option("--config", config, "Vehicle description (default: the shipped vehicle)");
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-baseline", argc, argv)) return *code;
+  VehicleFile file;
+  std::vector<std::string> problems;
+  if (!config.empty() && !v2vouch::config::Load(config, file, problems)) {
+    for (const std::string& problem : problems) {
+      std::fprintf(stderr, "v2vouch-baseline: %s\n", problem.c_str());
+    }
+    return kUsage;
+  }
+  std::string error;
+  if (!v2vouch::baseline::RunBaseline(in, file.vehicle, v2vouch::config::Print(file), out, error)) {
+    std::fprintf(stderr, "v2vouch-baseline: %s\n", error.c_str());
+    return kFailed;
+  }
+  return 0;
+}
