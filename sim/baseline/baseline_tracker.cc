@@ -46,6 +46,15 @@ Eigen::Vector2d Direction(double yaw_rad) { return {std::cos(yaw_rad), std::sin(
 
 double Seconds(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
 
+void AddSource(std::int8_t kind, std::int64_t utime, track_t& track) {
+  if (utime == 0) return;
+  track_source_t source;
+  source.kind = kind;
+  source.last_utime = utime;
+  track.sources.push_back(source);
+  track.num_sources = static_cast<std::int32_t>(track.sources.size());
+}
+
 }  // namespace
 
 BaselineTracker::BaselineTracker(const VehicleConfig& vehicle) : vehicle_(vehicle) {}
@@ -307,8 +316,8 @@ track_list_t BaselineTracker::List() const {
     out.object_class = static_cast<std::int8_t>(track.object_class);
     out.existence = 1.0;
     out.is_confirmed = 1;
-    out.last_radar_utime = track.radar_utime;
-    out.last_camera_utime = track.camera_utime;
+    AddSource(track_source_t::RADAR, track.radar_utime, out);
+    AddSource(track_source_t::CAMERA, track.camera_utime, out);
     out.bridge_budget_s = out.latitude_rad = out.longitude_rad = kNone;
     out.bias_east_m = out.bias_north_m = kNone;
     list.tracks.push_back(out);

@@ -102,7 +102,10 @@ class Reader {
       out.object_class = track.object_class;
       out.sender = BigEndian32(track.v2v_id);
       out.start = FromMicros(track.start_utime);
-      out.last_hit = FromMicros(std::max(track.last_radar_utime, track.last_camera_utime));
+      for (const track_source_t& source : track.sources) {
+        if (source.kind == track_source_t::V2V) continue;
+        out.last_hit = std::max(out.last_hit, FromMicros(source.last_utime));
+      }
       out.visibility = track.visibility;
       out.trust = track.trust_state;
       out.bridge_budget_s = track.bridge_budget_s;
