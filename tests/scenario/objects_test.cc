@@ -21,7 +21,7 @@ namespace {
 
 using evaluation::ListKind;
 
-struct Run {
+struct Drove {
   std::unique_ptr<evaluation::Evaluation> figures;
   ReplayResult replay;
   std::set<int> kinds;  // Of the sources that LOCAL's tracks name.
@@ -37,9 +37,9 @@ class ObjectLists : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  Run Drive(const std::string& scenario_name, const std::string& vehicle, std::uint64_t seed,
-            bool without_bsm = false) {
-    Run run;
+  Drove Drive(const std::string& scenario_name, const std::string& vehicle, std::uint64_t seed,
+              bool without_bsm = false) {
+    Drove run;
     sim::Scenario scenario;
     std::vector<std::string> problems;
     sim::LoadScenario("sim/scenarios/" + scenario_name + ".yaml", scenario, problems);
@@ -77,7 +77,7 @@ class ObjectLists : public ::testing::Test {
   }
 
  private:
-  static void NameKinds(const std::string& path, Run& run) {
+  static void NameKinds(const std::string& path, Drove& run) {
     std::string error;
     const auto reader = LogReader::Open(path, error);
     LogEvent event;
@@ -99,7 +99,7 @@ constexpr const char* kMixed = "daemon/vehicles/vehicle_mixed.yaml";
 
 TEST_F(ObjectLists, AloneGiveLocalAndPriority) {
   for (const std::uint64_t seed : {1U, 2U}) {
-    const Run run = Drive("left_turn", kAlone, seed);
+    const Drove run = Drive("left_turn", kAlone, seed);
     ASSERT_TRUE(run.figures);
     EXPECT_EQ(run.kinds, (std::set<int>{track_source_t::OBJECTS}));
     for (const std::uint64_t refused : run.replay.refused) EXPECT_EQ(refused, 0U);
@@ -112,7 +112,7 @@ TEST_F(ObjectLists, AloneGiveLocalAndPriority) {
 }
 
 TEST_F(ObjectLists, BesideRadarAndCameraFeedTheSameTracks) {
-  const Run run = Drive("left_turn", kMixed, 1);
+  const Drove run = Drive("left_turn", kMixed, 1);
   ASSERT_TRUE(run.figures);
   EXPECT_EQ(run.kinds, (std::set<int>{track_source_t::RADAR, track_source_t::CAMERA,
                                       track_source_t::OBJECTS}));
@@ -122,9 +122,9 @@ TEST_F(ObjectLists, BesideRadarAndCameraFeedTheSameTracks) {
 }
 
 TEST_F(ObjectLists, LocalIsTheSameWithoutRadioAndTwiceTheSame) {
-  const Run good = Drive("smoke", kAlone, 3);
-  const Run again = Drive("smoke", kAlone, 3);
-  const Run silent = Drive("smoke", kAlone, 3, true);
+  const Drove good = Drive("smoke", kAlone, 3);
+  const Drove again = Drive("smoke", kAlone, 3);
+  const Drove silent = Drive("smoke", kAlone, 3, true);
   EXPECT_EQ(good.replay.digest_local, again.replay.digest_local);
   EXPECT_EQ(good.replay.digest_priority, again.replay.digest_priority);
   EXPECT_EQ(good.replay.digest_local, silent.replay.digest_local);

@@ -50,8 +50,8 @@ std::vector<Arrival> Drive(double late_s, double clock_s = 0.0) {
   return arrivals;
 }
 
-struct Run {
-  explicit Run(const std::vector<Arrival>& arrivals) {
+struct Drove {
+  explicit Drove(const std::vector<Arrival>& arrivals) {
     PerceptionConfig config;
     config.vehicle.radars.clear();
     config.vehicle.cameras.clear();
@@ -72,7 +72,7 @@ struct Run {
 };
 
 TEST(ObjectListsInTime, LateOnesArePutInTheirPlaceBitForBit) {
-  const Run prompt(Drive(0.002)), late(Drive(0.3));
+  const Drove prompt(Drive(0.002)), late(Drive(0.3));
   EXPECT_TRUE(prompt.refusals.empty());
   EXPECT_TRUE(late.refusals.empty());
   ASSERT_EQ(prompt.newest.tracks.size(), 1U);
@@ -90,12 +90,12 @@ TEST(ObjectListsInTime, ARepeatedListIsADuplicateAndAnOldOneTooOld) {
   std::vector<Arrival> arrivals = Drive(0.002);
   arrivals.push_back({5.0, List(0, 3.9)});
   arrivals.push_back({5.0, List(0, 1.0)});
-  const Run run(arrivals);
+  const Drove run(arrivals);
   EXPECT_EQ(run.refusals, (std::vector{Reason::kDuplicate, Reason::kTooOld}));
 }
 
 TEST(ObjectListsInTime, ASourceWhoseClockIsAheadCostsItselfAndIsTold) {
-  const Run run(Drive(0.002, 5.0));
+  const Drove run(Drive(0.002, 5.0));
   EXPECT_EQ(run.newest.stamp, kStart + FromSeconds(3.9));
   EXPECT_EQ(run.newest.tracks.size(), 1U);
   ASSERT_FALSE(run.refusals.empty());
@@ -110,7 +110,7 @@ TEST(ObjectListsInTime, ASourceWhoseClockIsAheadCostsItselfAndIsTold) {
 }
 
 TEST(ObjectListsInTime, TheSectorsOfASourceAreWatchedWhileItSpeaks) {
-  const Run run(Drive(0.002));
+  const Drove run(Drive(0.002));
   for (const SectorHealth& sector : run.newest.sectors) {
     EXPECT_EQ(sector.state, SectorState::kWatched);
     EXPECT_EQ(sector.range_m, 80.0);
