@@ -57,7 +57,7 @@ std::optional<OwnSender::Message> OwnSender::Step(std::int64_t utime) {
   message.datagram = DatagramOf(*bsm, config_.form, config_.text);
   if (message.datagram.empty()) return std::nullopt;
   if (ids_[0] != own_.id()) {
-    std::ranges::rotate(ids_, ids_.end() - 1);
+    std::rotate(ids_.begin(), ids_.end() - 1, ids_.end());
     ids_[0] = own_.id();
   }
   Datagram sent;

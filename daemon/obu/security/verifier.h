@@ -79,7 +79,8 @@ class Verifier {
   Signer* Find(const HashedId8& digest);
   Signer& Learn(const Hash& hash, const Dot2Data& data);
   bool SpendBudget(std::int64_t rx_utime);
-  SignatureFinding JudgeProven(const Signer& signer, const Dot2Data& data, const Hash& hash) const;
+  [[nodiscard]] SignatureFinding JudgeProven(const Signer& signer, const Dot2Data& data,
+                                             const Hash& hash) const;
   SignatureFinding JudgePinned(Signer& signer, const Dot2Data& data, const Hash& hash,
                                std::int64_t rx_utime) const;
 

@@ -35,9 +35,15 @@ gnss_fix_t Fix(std::int64_t utime) {
   return fix;
 }
 
+OwnSender BareSender() {
+  OwnSenderConfig config;
+  config.form = OutputForm::kFrame;
+  return OwnSender(config, 5);
+}
+
 // Steps every millisecond as a loop would, with fixes at 1 Hz and motion at 20 Hz where wanted.
 struct Drive {
-  OwnSender sender{{.form = OutputForm::kFrame}, 5};
+  OwnSender sender = BareSender();
   std::int64_t now = kStart;
   std::vector<OwnSender::Message> messages{};
 
