@@ -32,7 +32,8 @@ struct Stand {
   }
   void Boxes(const std::vector<BoxMeasurement>& boxes, int source = 0, double probability = 0.9) {
     tracker.UpdateObjects(source, ego, boxes, [&](const LocalTrack&) {
-      return Detectability{probability, Visibility::kVisible};
+      return Detectability{probability,
+                           probability > 0.0 ? Visibility::kVisible : Visibility::kOutOfView};
     });
   }
   std::vector<LocalTrack> Confirmed() const {
