@@ -170,16 +170,16 @@ TEST(RadarFamily, SparseRadarsGiveOneOrTwoReturnsForACar) {
 
 TEST(RadarFamily, WideCellsMergeNeighbours) {
   const auto count = [](SensorMode mode) {
-    std::size_t count = 0;
+    std::size_t total = 0;
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       Scenario scenario = Scene(mode);
       AddVehicle(scenario, 1, 50.0, 1.6, 0.0);
       AddVehicle(scenario, 2, 50.0, -1.6, 0.0);
       for (const Return& r : Returns(*MakeWorld(scenario, seed), 40)) {
-        if (std::abs(r.place.y()) < 4.0 && std::abs(r.place.x() - 50.0) < 3.0) ++count;
+        if (std::abs(r.place.y()) < 4.0 && std::abs(r.place.x() - 50.0) < 3.0) ++total;
       }
     }
-    return static_cast<double>(count);
+    return static_cast<double>(total);
   };
   EXPECT_LT(count(SensorMode::kMerged), 0.7 * count(SensorMode::kCorners));
 }
