@@ -143,16 +143,16 @@ class Drawer {
     r.specular_lobe_deg = U(8.0, 20.0);
     r.corner_db = U(32.0, 38.0);
     r.wheel_db = U(26.0, 33.0);
-    r.face_points = Between(2, 4);
-    r.face_db = U(28.0, 34.0);
-    r.inside_points = Between(4, 8);
-    r.inside_db = U(20.0, 27.0);
+    r.face_points = Between(2, 3);
+    r.face_db = U(26.0, 32.0);
+    r.inside_points = Between(2, 4);
+    r.inside_db = U(17.0, 24.0);
     r.inside_depth = U(0.6, 0.95);
     r.fading_s = U(0.5, 4.0);
-    r.threshold_db = U(10.0, 13.0);
-    r.cell_range_m = U(0.2, 0.5);
-    r.cell_azimuth_deg = U(1.0, 3.0);
-    r.most_returns = Between(6, 10);
+    r.threshold_db = U(12.0, 15.0);
+    r.cell_range_m = U(0.15, 0.35);
+    r.cell_azimuth_deg = U(0.8, 2.0);
+    r.most_returns = Between(5, 8);
     r.under_body = U(0.03, 0.12);
     r.double_bounce = U(0.0, 0.04);
     r.mirror = U(0.02, 0.08);
@@ -183,10 +183,10 @@ class Drawer {
         r.snr_given = false;
         break;
       case SensorMode::kFewFace:
-        r.specular_db = U(26.0, 32.0);
+        r.specular_db = U(14.0, 20.0);
         r.specular_lobe_deg = U(3.0, 6.0);
-        r.corner_db = U(22.0, 28.0);
-        r.face_db = U(18.0, 24.0);
+        r.corner_db = U(12.0, 18.0);
+        r.face_db = U(10.0, 16.0);
         r.inside_db = U(26.0, 32.0);
         break;
       case SensorMode::kObjects:
