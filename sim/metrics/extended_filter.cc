@@ -109,9 +109,13 @@ void ExtendedFilter::AddSensor(const SensorSpec& sensor, const PlanarMotion& ego
   Vector row = Vector::Zero();
   row.segment<2>(kPosition) = u;
   (meets_end ? row(kLength) : row(kWidth)) = -0.5 / (meets_end ? cosine : sine);
-  if (sensor.is_radar) {
+  const bool is_radar = sensor.kind == SensorKind::kRadar;
+  const bool is_camera = sensor.kind == SensorKind::kCamera;
+  if (is_radar) {
     row(kAlongError) = 1.0;
     Add(row, std::hypot(kFace_m, sensor.range_sigma_m), detection_probability);
+  } else if (!is_camera) {  // A box on the ground, by its nearest face.
+    Add(row, sensor.position_sigma_m, detection_probability);
   } else {
     const double per_rad = (range * range + sensor.z_m * sensor.z_m) / std::max(sensor.z_m, 0.1);
     Add(row, sensor.depression_sigma_rad * per_rad, detection_probability);
@@ -120,17 +124,18 @@ void ExtendedFilter::AddSensor(const SensorSpec& sensor, const PlanarMotion& ego
   const double box_edge =
       kBoxCorrelation *
       std::hypot(std::sqrt(2.0) * sensor.azimuth_sigma_rad * range, 2.0 * kBoxEdgeShare * half);
-  const double edge =
-      sensor.is_radar ? std::hypot(kEdge_m, range * sensor.azimuth_sigma_rad) : box_edge;
+  const double radar_edge = std::hypot(kEdge_m, range * sensor.azimuth_sigma_rad);
+  const double ground_edge = is_radar ? radar_edge : sensor.position_sigma_m;
+  const double edge = is_camera ? box_edge : ground_edge;
   for (const double side : {1.0, -1.0}) {
     row.setZero();
     row.segment<2>(kPosition) = w;
     row(kLength) = side * 0.5 * sine;
     row(kWidth) = side * 0.5 * cosine;
-    if (sensor.is_radar) row(kAcrossError) = half;
+    if (is_radar) row(kAcrossError) = half;
     Add(row, edge, detection_probability);
   }
-  if (!sensor.is_radar) return;
+  if (!is_radar) return;
   const Vec2 v_sensor =
       ego.speed_mps * ego.direction() + ego.yaw_rate_radps * Vec2(-lever.y(), lever.x());
   const Vec2 v = target.speed_mps * target.direction() - v_sensor;

@@ -22,7 +22,7 @@ class SceneMaker {
       : log_(log), kind_(kind), settings_(settings), gospa_({.cutoff_m = settings.cutoff_m}) {
     for (const ReceivedList& list : log.lists[Index(kind)]) newest_[list.stamp] = &list;
     for (const SensorSpec& sensor : log.specs.sensors) {
-      (sensor.is_radar ? radars_ : cameras_).push_back(&sensor);
+      (sensor.kind == SensorKind::kCamera ? cameras_ : radars_).push_back(&sensor);
     }
   }
 

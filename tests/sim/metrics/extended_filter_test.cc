@@ -53,7 +53,7 @@ TEST(ExtendedFilter, ALorrysLengthCostsMoreThanACars) {
 
 TEST(ExtendedFilter, ACameraBuysTheErrorAcross) {
   SensorSpec camera;
-  camera.is_radar = false;
+  camera.kind = SensorKind::kCamera;
   camera.z_m = 1.4;
   camera.azimuth_sigma_rad = 0.0015;
   ExtendedFilter radar_only({0.5, 0.3, 1.5}, {0.001, 0.001}), both({0.5, 0.3, 1.5}, {0.001, 0.001});

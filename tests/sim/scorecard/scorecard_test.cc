@@ -42,7 +42,7 @@ struct Drive {
     radar.max_range_m = 100.0;
     SensorSpec camera = radar;
     camera.channel = "CAMERA_FRONT";
-    camera.is_radar = false;
+    camera.kind = SensorKind::kCamera;
     camera.half_fov_rad = FromDegrees(30.0);
     log.specs.sensors = {radar, camera};
     for (const Object& object : objects) {
