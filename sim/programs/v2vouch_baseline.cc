@@ -17,7 +17,7 @@ constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 
 constexpr const char* kExamples =
-    "Example:\n"
+    "Examples:\n"
     "  v2vouch-baseline drive.lcm --config vehicle.yaml --out base.lcm\n"
     "  v2vouch-eval base.lcm --scorecard\n"
     "\nExit codes: 0 good; 1 a log cannot be read or written; 2 usage or configuration.";

@@ -148,8 +148,8 @@ enum class ReadScope {
 bool ReadRunLog(const std::string& path, const std::function<void(double)>& progress, RunLog& log,
                 std::string& error, ReadScope scope = ReadScope::kAll);
 
-/// Adds the LOCAL tracks of another run of the same drive to the lists of `log` with the same stamp;
-/// their ids are made distinct by `run`, above 0.
+/// Adds the LOCAL tracks of another run of the same drive to the lists of `log` with the same
+/// stamp; their ids are made distinct by `run`, above 0.
 void JoinLocal(const RunLog& other, int run, RunLog& log);
 
 /// The newest list received by `t`, or null.

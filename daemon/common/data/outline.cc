@@ -17,21 +17,26 @@ constexpr double kAside_m = 0.5;
 
 }  // namespace
 
-void KeepOutline(std::vector<OutlineReturn>& returns) {
-  if (returns.size() < 2) return;
-  std::ranges::sort(returns, [](const OutlineReturn& a, const OutlineReturn& b) {
-    return std::tuple(-a.strength_db, a.range_m, a.azimuth_rad) <
-           std::tuple(-b.strength_db, b.range_m, b.azimuth_rad);
+std::size_t KeepOutline(std::span<OutlineReturn> returns) {
+  if (returns.size() < 2) return returns.size();
+  const double least_db =
+      std::ranges::max(returns, {}, &OutlineReturn::strength_db).strength_db - kStrong_db;
+  std::ranges::sort(returns, {}, [](const OutlineReturn& r) {
+    return std::tuple(r.range_m, r.azimuth_rad, -r.strength_db);
   });
-  const double least_db = returns.front().strength_db - kStrong_db;
-  std::erase_if(returns, [&](const OutlineReturn& r) { return r.strength_db < least_db; });
-  const std::vector<OutlineReturn> strong = returns;
-  std::erase_if(returns, [&](const OutlineReturn& r) {
-    return std::ranges::any_of(strong, [&](const OutlineReturn& before) {
-      return r.range_m - before.range_m > kBehind_m &&
-             std::abs(r.azimuth_rad - before.azimuth_rad) * before.range_m < kAside_m;
-    });
+  std::size_t kept = 0;
+  for (const OutlineReturn& r : returns) {
+    const bool is_behind =
+        std::ranges::any_of(returns.first(kept), [&](const OutlineReturn& before) {
+          return r.range_m - before.range_m > kBehind_m &&
+                 std::abs(r.azimuth_rad - before.azimuth_rad) * before.range_m < kAside_m;
+        });
+    if (r.strength_db >= least_db && !is_behind) returns[kept++] = r;
+  }
+  std::ranges::sort(returns.first(kept), {}, [](const OutlineReturn& r) {
+    return std::tuple(-r.strength_db, r.range_m, r.azimuth_rad);
   });
+  return kept;
 }
 
 }  // namespace v2vouch

@@ -198,7 +198,7 @@ void RadarPreprocessor::Emit(std::span<const int> members, const RadarConfig& ra
     const Reflection& r = at(member);
     outline_.push_back({r.range_m, r.azimuth_rad, r.strength_db});
   }
-  if (!m.is_object) KeepOutline(outline_);
+  if (!m.is_object) outline_.resize(KeepOutline(outline_));
   Eigen::Vector2d mean(0.0, 0.0);
   double ground_rate_mps = 0.0;
   double count = 0.0;

@@ -3,8 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
+#include <span>
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/data/outline.h"
@@ -56,14 +57,12 @@ RadarMeasurement JoinClusters(const RadarMeasurement& a, const RadarMeasurement&
   double wa = na / (na + nb);
   const double middle_share = 1.0 - wa;
   if (a.outline_count > 0 && b.outline_count > 0) {
-    std::vector<OutlineReturn> outline;
-    outline.insert(outline.end(), a.outline.begin(),
-                   a.outline.begin() + static_cast<std::ptrdiff_t>(a.outline_count));
-    outline.insert(outline.end(), b.outline.begin(),
-                   b.outline.begin() + static_cast<std::ptrdiff_t>(b.outline_count));
-    KeepOutline(outline);
-    out.outline_count = std::min(outline.size(), RadarMeasurement::kMostOutline);
-    std::copy_n(outline.begin(), out.outline_count, out.outline.begin());
+    std::array<OutlineReturn, 2 * RadarMeasurement::kMostOutline> both;
+    const auto middle = std::copy_n(a.outline.begin(), a.outline_count, both.begin());
+    std::copy_n(b.outline.begin(), b.outline_count, middle);
+    const auto kept = KeepOutline(std::span(both).first(a.outline_count + b.outline_count));
+    out.outline_count = std::min(kept, RadarMeasurement::kMostOutline);
+    std::copy_n(both.begin(), out.outline_count, out.outline.begin());
     double from_a = 0.0;
     for (std::size_t k = 0; k < out.outline_count; ++k) {
       for (std::size_t m = 0; m < a.outline_count; ++m) {

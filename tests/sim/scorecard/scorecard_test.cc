@@ -185,8 +185,7 @@ TEST(Scorecard, EntriesWithoutAVehicleAreCountedBySecondsAndByWhetherTheyCoast) 
     coasting.last_hit = At(4.0);
     std::vector<ListedTrack> tracks = {Track(20.0, 0.0, 1)};
     if (t > 3.98 && t < 5.98) tracks.push_back(coasting);
-    if (t > 6.98)
-      tracks.push_back(Track(20.0, 3.5, 9));  // Near the car's box: false, not unseen.
+    if (t > 6.98) tracks.push_back(Track(20.0, 3.5, 9));  // Near the car's box: false, not unseen.
     return tracks;
   };
   const Scorecard card = Judged(drive.Log());

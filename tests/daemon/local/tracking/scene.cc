@@ -133,8 +133,7 @@ std::vector<RadarMeasurement> Scene::Scan(int index) {
     z.azimuth_max_rad = high[1];
     z.middle_azimuth_rad = mean[1];
     if (extended) {
-      KeepOutline(outline);
-      z.outline_count = std::min(outline.size(), RadarMeasurement::kMostOutline);
+      z.outline_count = std::min(KeepOutline(outline), RadarMeasurement::kMostOutline);
       std::copy_n(outline.begin(), z.outline_count, z.outline.begin());
     }
     scan.push_back(z);
