@@ -45,9 +45,6 @@ struct RadarMeasurement {
   /// Share of the vehicle that this frame could observe, by azimuth; set once a track is given it.
   /// The rest lies past the field of view or is occluded.
   double visible_share = 1.0;
-  /// That edge of the vehicle is hidden from the radar or out of its view; set with visible_share.
-  bool left_is_covered = false;
-  bool right_is_covered = false;
 };
 
 /// One camera box as angles in the levelled camera frame: origin at the optical centre, x along

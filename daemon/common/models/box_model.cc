@@ -29,6 +29,18 @@ double AxisDifference(double a_rad, double b_rad) {
   return d <= -0.5 * kPi ? d + kPi : d;
 }
 
+Linearized LinearizeBoxVelocity(const StateVector& x, const BoxMeasurement& z) {
+  const Eigen::Vector2d forward(std::cos(x[kYaw]), std::sin(x[kYaw]));
+  Linearized model;
+  model.y = *z.velocity_O_mps - x[kSpeed] * forward;
+  model.H.setZero(2, kStateSize);
+  model.E.setZero(2, 2);
+  model.H.block<2, 1>(0, kYaw) = x[kSpeed] * Eigen::Vector2d(-forward.y(), forward.x());
+  model.H.block<2, 1>(0, kSpeed) = forward;
+  model.R = z.velocity_covariance;
+  return model;
+}
+
 Linearized LinearizeBox(const StateVector& x, const BoxMeasurement& z) {
   const double turn = AxisDifference(z.yaw_rad, x[kYaw]);
   const bool has_axis = std::abs(turn) < kOddAxis_rad;
@@ -49,12 +61,10 @@ Linearized LinearizeBox(const StateVector& x, const BoxMeasurement& z) {
     ++row;
   }
   if (z.velocity_O_mps) {
-    const Eigen::Vector2d forward(std::cos(x[kYaw]), std::sin(x[kYaw]));
-    const Eigen::Vector2d left(-forward.y(), forward.x());
-    model.y.segment<2>(row) = *z.velocity_O_mps - x[kSpeed] * forward;
-    model.H.block<2, 1>(row, kYaw) = x[kSpeed] * left;
-    model.H.block<2, 1>(row, kSpeed) = forward;
-    model.R.block<2, 2>(row, row) = z.velocity_covariance;
+    const Linearized velocity = LinearizeBoxVelocity(x, z);
+    model.y.segment<2>(row) = velocity.y;
+    model.H.middleRows<2>(row) = velocity.H;
+    model.R.block<2, 2>(row, row) = velocity.R;
   }
   return model;
 }

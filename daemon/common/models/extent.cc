@@ -17,9 +17,8 @@ constexpr double kMaxLength_m = 25.0;
 constexpr double kMaxWidth_m = 4.0;
 // Standard deviations of range or azimuth by which a span may exceed the box and the noise.
 constexpr double kSpanSlack = 2.0;
-// How well the deepest reflection marks the far end, and the outermost one the edge.
+// How well the deepest reflection marks the far end.
 constexpr double kInsideSigma_m = 2.0;
-constexpr double kEdgeSigma_m = 0.25;
 // Seen at a smaller angle than this (its sine), a flank has next to no width in azimuth.
 constexpr double kFlankShows = 0.3;
 // 2 cm after one second: nothing real, it keeps the filter able to change its mind.
@@ -148,7 +147,7 @@ bool UpdateExtended(const Linearized& measurement, ExtendedState& state, bool le
   if (!learns_size) frozen |= 1U << kLength | 1U << kWidth;
   if (!JosephUpdate<ExtendedState::kSize>(Innovation(measurement, state),
                                           WholeJacobian(measurement), measurement.R, state.mean,
-                                          state.covariance, 0, frozen)) {
+                                          state.covariance, frozen)) {
     return false;
   }
   Clamp(state);
@@ -301,7 +300,7 @@ std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoSta
     const double noise = 2.0 * std::sqrt(std::log(measurement.returns)) * sigma[i];
     const double excess = span[i] - noise - kSpanSlack * sigma[i] - whole[i];
     const double noise2 = noise * noise;
-    const double inside = i == 0 ? kInsideSigma_m : kEdgeSigma_m / range;
+    const double inside = i == 0 ? kInsideSigma_m : kRadarEdgeSigma_m / range;
     out.R(i, i) = noise2 + inside * inside;
     if (excess > 0.0) {
       out.y[i] = excess;

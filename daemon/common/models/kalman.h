@@ -14,15 +14,13 @@ namespace v2vouch {
 ///
 ///     S = H P H' + R,  K = P H' S^-1,  mean += K y,  P = (I - K H) P (I - K H)' + K R K'
 ///
-/// @param considered this many states at the end keep their mean (Schmidt: their uncertainty
-/// counts, but
-///   the measurement may not teach them).
-/// @param frozen bit i set: so is state i.
+/// @param frozen bit i set: state i keeps its mean (Schmidt: its uncertainty counts, but the
+///   measurement may not teach it).
 /// @return false when S is not positive definite or the result is not finite; nothing is changed.
 template <int N, class Vector, class Jacobian, class Covariance>
 bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
                   Eigen::Matrix<double, N, 1>& mean, Eigen::Matrix<double, N, N>& P,
-                  int considered = 0, unsigned frozen = 0) {
+                  unsigned frozen = 0) {
   using Gain =
       Eigen::Matrix<double, N, Vector::RowsAtCompileTime, 0, N, Vector::MaxRowsAtCompileTime>;
   using Innovation = Eigen::Matrix<double, Vector::RowsAtCompileTime, Vector::RowsAtCompileTime, 0,
@@ -36,7 +34,6 @@ bool JosephUpdate(const Vector& y, const Jacobian& H, const Covariance& R,
   const Eigen::LLT<Innovation> llt(S);
   if (llt.info() != Eigen::Success) return false;
   Gain K = llt.solve(PHt.transpose()).transpose();
-  K.bottomRows(considered).setZero();
   for (int i = 0; i < N; ++i) {
     if ((frozen >> i & 1U) != 0) K.row(i).setZero();
   }

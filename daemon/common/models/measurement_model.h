@@ -29,6 +29,12 @@ struct Linearized {
   ExtentJacobian O = ExtentJacobian(0, 2);
 };
 
+/// With a part of a vehicle unseen, the mean of the rest is displaced, by up to half of its own
+/// length; the same part stays unseen from scan to scan: so many scans count as one.
+inline constexpr double kUnseenLooks = 8.0;
+/// Corners are round: 1 sigma of where a radar has the edge of a silhouette.
+inline constexpr double kRadarEdgeSigma_m = 0.25;
+
 /// Where the centre of mass of a vehicle's radar reflections lies, as seen from a sensor: offset
 /// from the footprint's centre in the vehicle's own axes. Faces weigh by the angle under which the
 /// sensor sees them, in perspective: a face seen edge-on or from behind its plane counts nothing.
@@ -44,6 +50,13 @@ struct Linearized {
 Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, const Eigen::Vector2d& forward_O,
                                  const Extent& extent);
 Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, double yaw_rad, const Extent& extent);
+
+/// Velocity of a radar's antenna over ground, axes of B: rear axle plus yaw rate x lever arm.
+Eigen::Vector2d AntennaVelocity_B(const EgoState& ego, const RadarConfig& radar);
+/// The ego's own motion is measured too: variances that the noise of its speed and of its yaw rate
+/// give a range rate along `line_B`.
+Eigen::Vector2d EgoMotionVariances(const EgoState& ego, const RadarConfig& radar,
+                                   const Eigen::Vector2d& line_B);
 
 /// Extent-aware radar model.
 ///
@@ -98,6 +111,8 @@ LinearizedPose LinearizePose(const StateVector& x, const PoseMeasurement& measur
 /// quarter), the velocity where it is unknown.
 Linearized LinearizeBox(const StateVector& x, const BoxMeasurement& measurement);
 inline constexpr double kOddAxis_rad = 0.6;
+/// Its velocity's two rows alone; only where it tells one.
+Linearized LinearizeBoxVelocity(const StateVector& x, const BoxMeasurement& measurement);
 
 /// Difference of two axes, in (-pi/2, pi/2].
 double AxisDifference(double a_rad, double b_rad);

@@ -17,9 +17,6 @@ constexpr double kPoint_m = 1e-3;
 // Share of the reflections' spread that more reflections do not remove: scatterers sit where the
 // body puts them (wheels, corners, plate) and stay there from scan to scan.
 constexpr double kLastingSpread = 0.04;
-// What is not seen shifts the mean of the rest, by up to half of its own length: for one face
-// (1 - s)^2 x spread. The same part stays unseen from scan to scan: so many scans count as one.
-constexpr double kUnseenLooks = 8.0;
 // Vehicles longer than this are measured at the end they turn to the radar, from this far before
 // it.
 constexpr double kLong_m = 7.0;
@@ -175,15 +172,18 @@ void AddScatter(const Mean& reflections, const Line& line, const RadarConfig& ra
   R.diagonal().array() += missing.max(0.0);
 }
 
-// The ego's own motion is measured too: its noise reaches every range rate.
-double EgoMotionVariance(const EgoState& ego, const RadarConfig& radar,
-                         const Eigen::Vector2d& line_B) {
-  const double lever = line_B.y() * radar.x_m - line_B.x() * radar.y_m;
-  return std::pow(line_B.x() * ego.speed_sigma_mps, 2) +
-         std::pow(lever * ego.yaw_rate_sigma_radps, 2);
+}  // namespace
+
+Eigen::Vector2d AntennaVelocity_B(const EgoState& ego, const RadarConfig& radar) {
+  return {ego.speed_mps - ego.yaw_rate_radps * radar.y_m, ego.yaw_rate_radps * radar.x_m};
 }
 
-}  // namespace
+Eigen::Vector2d EgoMotionVariances(const EgoState& ego, const RadarConfig& radar,
+                                   const Eigen::Vector2d& line_B) {
+  const double lever = line_B.y() * radar.x_m - line_B.x() * radar.y_m;
+  return {std::pow(line_B.x() * ego.speed_sigma_mps, 2),
+          std::pow(lever * ego.yaw_rate_sigma_radps, 2)};
+}
 
 Eigen::Vector2d ReflectionOffset(const Eigen::Vector2d& p_OS, double yaw_rad,
                                  const Extent& extent) {
@@ -213,11 +213,8 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
   }
   const Pose<Odometry, Radar> X_OR =
       ego.X_OB * Pose<Body, Radar>(radar.x_m, radar.y_m, radar.yaw_rad);
-  // Velocity of the antenna: rear axle plus yaw rate x lever arm.
   const Eigen::Matrix2d R_OB = ego.X_OB.rotation();
-  const Eigen::Vector2d v_R_O =
-      R_OB * Eigen::Vector2d(ego.speed_mps - ego.yaw_rate_radps * radar.y_m,
-                             ego.yaw_rate_radps * radar.x_m);
+  const Eigen::Vector2d v_R_O = R_OB * AntennaVelocity_B(ego, radar);
 
   const D px = D::Variable(x[kX] - X_OR.x_m(), kX);
   const D py = D::Variable(x[kY] - X_OR.y_m(), kY);
@@ -253,7 +250,7 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
       R(0, 0) = radar.range_sigma_m * radar.range_sigma_m + kEndSigma_m * kEndSigma_m;
     }
   }
-  R(2, 2) += EgoMotionVariance(ego, radar, R_OB.transpose() * along);
+  R(2, 2) += EgoMotionVariances(ego, radar, R_OB.transpose() * along).sum();
   out.R = R;
   const Eigen::Vector2d extent_variance(extent.length_sigma_m * extent.length_sigma_m,
                                         extent.width_sigma_m * extent.width_sigma_m);

@@ -24,12 +24,8 @@ constexpr double kDeepSigmas = 1.5;
 constexpr double kNearSigmas = 3.0;
 // Share of half a silhouette by which the mean of one scan misses its middle, at best.
 constexpr double kMiddleShare = 0.3;
-// With a part unseen the mean of the rest is displaced, in scan after scan: so many are as one.
-constexpr double kUnseenLooks = 8.0;
 // Where a ray misses the box, a metre of range weighs as much as so much beside the ray.
 constexpr double kNearer = 0.2;
-// A silhouette's edge is this blurred: corners are round.
-constexpr double kEdgeSigma_m = 0.25;
 // Wheels and a turn that has just begun.
 constexpr double kRateSigma_mps = 0.1;
 constexpr double kYawRateDoubt_radps = 0.05;
@@ -131,8 +127,8 @@ struct Silhouette {
 };
 
 // Bearings between the outermost corners, as far as the field of view reaches.
-Silhouette SilhouetteOf(const Box& box, const D& px, const D& py, const RadarConfig& radar,
-                        double sensor_yaw_rad) {
+Silhouette SilhouetteOf(const Scene& scene, double half_fov_rad) {
+  const auto& [sensor_yaw_rad, px, py, c, s, box] = scene;
   const D centre = atan2(py, px);
   D left = centre;
   D right = centre;
@@ -140,8 +136,8 @@ Silhouette SilhouetteOf(const Box& box, const D& px, const D& py, const RadarCon
     for (const double across : {1.0, -1.0}) {
       const D ahead = along * box.half_length;
       const D aside = across * box.half_width;
-      const D x = px + box.c * ahead - box.s * aside;
-      const D y = py + box.s * ahead + box.c * aside;
+      const D x = px + c * ahead - s * aside;
+      const D y = py + s * ahead + c * aside;
       // Relative to the centre, so that no corner jumps at half a turn.
       const D apart = atan2(px * y - py * x, px * x + py * y);
       const D bearing = centre + apart;
@@ -149,10 +145,10 @@ Silhouette SilhouetteOf(const Box& box, const D& px, const D& py, const RadarCon
       if (bearing.value < right.value) right = bearing;
     }
   }
-  if (radar.half_fov_rad < kPi) {
+  if (half_fov_rad < kPi) {
     const double axis = centre.value + AngleDifference(sensor_yaw_rad, centre.value);
-    const double most = axis + radar.half_fov_rad;
-    const double least = axis - radar.half_fov_rad;
+    const double most = axis + half_fov_rad;
+    const double least = axis - half_fov_rad;
     if (left.value > most && right.value < most) left = D(most);
     if (right.value < least && left.value > least) right = D(least);
   }
@@ -201,7 +197,7 @@ std::optional<Linearized> LinearizeOutline(const StateVector& x, const Extent& e
   if (scene.IsInside()) return std::nullopt;
   const auto& [sensor_yaw_rad, px, py, c, s, box] = scene;
   const Depth depth = MeanDepth(box, sensor_yaw_rad, radar.azimuth_sigma_rad, z);
-  const Silhouette silhouette = SilhouetteOf(box, px, py, radar, sensor_yaw_rad);
+  const Silhouette silhouette = SilhouetteOf(scene, radar.half_fov_rad);
   const D middle_O = 0.5 * (silhouette.left_O + silhouette.right_O);
   const double half_rad = 0.5 * (silhouette.left_O.value - silhouette.right_O.value);
 
@@ -214,9 +210,7 @@ std::optional<Linearized> LinearizeOutline(const StateVector& x, const Extent& e
   const D vx = speed * c - yaw_rate * (D(q.y()) - py);
   const D vy = speed * s + yaw_rate * (D(q.x()) - px);
   const Eigen::Matrix2d R_OB = ego.X_OB.rotation();
-  const Eigen::Vector2d antenna =
-      R_OB * Eigen::Vector2d(ego.speed_mps - ego.yaw_rate_radps * radar.y_m,
-                             ego.yaw_rate_radps * radar.x_m);
+  const Eigen::Vector2d antenna = R_OB * AntennaVelocity_B(ego, radar);
   const D range_rate = u.x() * (vx - D(antenna.x())) + u.y() * (vy - D(antenna.y()));
 
   Linearized out;
@@ -248,12 +242,11 @@ std::optional<Linearized> LinearizeOutline(const StateVector& x, const Extent& e
       across.x() * (vx.value - antenna.x()) + across.y() * (vy.value - antenna.y());
   const double lever_m = across.x() * (q.x() - px.value) + across.y() * (q.y() - py.value);
   const Eigen::Vector2d line_B = R_OB.transpose() * u;
-  const double ego_lever_m = line_B.y() * radar.x_m - line_B.x() * radar.y_m;
+  const Eigen::Vector2d from_ego = EgoMotionVariances(ego, radar, line_B);
   out.R(2, 2) = (square(radar.range_rate_sigma_mps) + square(kRateSigma_mps) +
                  square(passing_mps * radar.azimuth_sigma_rad)) /
                     n_outline +
-                square(kYawRateDoubt_radps * lever_m) + square(line_B.x() * ego.speed_sigma_mps) +
-                square(ego_lever_m * ego.yaw_rate_sigma_radps);
+                square(kYawRateDoubt_radps * lever_m) + from_ego[0] + from_ego[1];
   out.R(2, 2) = std::max(out.R(2, 2), z.covariance(2, 2));
   const Eigen::Vector2d extent_variance(square(extent.length_sigma_m),
                                         square(extent.width_sigma_m));
@@ -267,10 +260,7 @@ std::optional<Linearized> LinearizeEdges(const StateVector& x, const Extent& ext
   if (z.outline_count == 0) return std::nullopt;
   const Scene scene(x, extent, ego, radar);
   if (scene.IsInside()) return std::nullopt;
-  RadarConfig everywhere = radar;
-  everywhere.half_fov_rad = kPi;
-  const Silhouette silhouette =
-      SilhouetteOf(scene.box, scene.px, scene.py, everywhere, scene.sensor_yaw_rad);
+  const Silhouette silhouette = SilhouetteOf(scene, kPi);  // Wherever the field of view ends.
   const double noise_rad = radar.azimuth_sigma_rad * std::sqrt(1.0 + std::log(z.outline_count));
   double leftmost_rad = z.outline[0].azimuth_rad;
   double rightmost_rad = leftmost_rad;
@@ -291,7 +281,7 @@ std::optional<Linearized> LinearizeEdges(const StateVector& x, const Extent& ext
   out.y[0] = left > 0.0 ? left : -right;
   out.H = edge.gradient.head<kStateSize>();
   out.E = edge.gradient.tail<2>();
-  const double sigma_rad = std::hypot(radar.azimuth_sigma_rad, kEdgeSigma_m / z.range_m);
+  const double sigma_rad = std::hypot(radar.azimuth_sigma_rad, kRadarEdgeSigma_m / z.range_m);
   out.R.resize(1, 1);
   out.R(0, 0) = sigma_rad * sigma_rad;
   const Eigen::Vector2d extent_variance(extent.length_sigma_m * extent.length_sigma_m,

@@ -19,6 +19,7 @@ struct Reflection {
   double ground_rate_mps = 0.0;  ///< Range rate with the antenna's motion taken out.
   double strength_db = 0.0;      ///< SNR; 0 where the sensor tells none.
   bool is_standing = false;
+  bool is_outline = false;  ///< Marks its cluster's outline; known once that is emitted.
   int object_id = -1;
 };
 

@@ -202,14 +202,12 @@ void RadarPreprocessor::Emit(std::span<const int> members, const RadarConfig& ra
   Eigen::Vector2d mean(0.0, 0.0);
   double ground_rate_mps = 0.0;
   double count = 0.0;
-  const auto is_outline = [&](const Reflection& r) {
-    return std::ranges::any_of(outline_, [&](const OutlineReturn& o) {
+  for (const int member : members) {
+    Reflection& r = reflections_[static_cast<std::size_t>(member)];
+    r.is_outline = std::ranges::any_of(outline_, [&](const OutlineReturn& o) {
       return o.range_m == r.range_m && o.azimuth_rad == r.azimuth_rad;
     });
-  };
-  for (const int member : members) {
-    const Reflection& r = at(member);
-    if (!is_outline(r)) continue;
+    if (!r.is_outline) continue;
     mean += Eigen::Vector2d(r.x_m, r.y_m);
     ground_rate_mps += r.ground_rate_mps;
     count += 1.0;
@@ -241,7 +239,7 @@ void RadarPreprocessor::Emit(std::span<const int> members, const RadarConfig& ra
     right_rad = std::min(right_rad, aside_rad);
     left_rad = std::max(left_rad, aside_rad);
     middle_rad += aside_rad;
-    if (!is_outline(r)) continue;
+    if (!r.is_outline) continue;
     const Eigen::Vector2d off = Eigen::Vector2d(r.x_m, r.y_m) - mean;
     const double along_m = off.dot(ray);
     const double across_rad = (ray.x() * off.y() - ray.y() * off.x()) / m.range_m;

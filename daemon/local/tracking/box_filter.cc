@@ -45,19 +45,6 @@ double VelocitySurprise(const Eigen::Vector2d& y, const Eigen::Matrix2d& S) {
 // A velocity that does not fit the motion at all belongs to another vehicle's box, or to none.
 constexpr double kVelocityGate = 16.0;
 
-// The velocity's rows alone: what position, axis and size say is used before.
-Linearized LinearizeVelocity(const ExtendedState& state, const BoxMeasurement& z) {
-  const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
-  Linearized model;
-  model.y = *z.velocity_O_mps - state.mean[kSpeed] * forward;
-  model.H.setZero(2, kStateSize);
-  model.E.setZero(2, 2);
-  model.H.block<2, 1>(0, kYaw) = state.mean[kSpeed] * Eigen::Vector2d(-forward.y(), forward.x());
-  model.H.block<2, 1>(0, kSpeed) = forward;
-  model.R = z.velocity_covariance;
-  return model;
-}
-
 }  // namespace
 
 void VehicleFilter::StartAt(const BoxMeasurement& z) {
@@ -109,7 +96,7 @@ std::optional<Likelihood> VehicleFilter::Evaluate(const BoxMeasurement& z) const
   likelihood->log_det += Surprise(z.width_m - state.mean[ExtendedState::kWidth],
                                   variance(ExtendedState::kWidth, z.width_sigma_m), kWidthSpan_m);
   if (z.velocity_O_mps) {
-    const Linearized model = LinearizeVelocity(state, z);
+    const Linearized model = LinearizeBoxVelocity(state.mean.head<kStateSize>(), z);
     const Eigen::Matrix<double, 2, kStateSize> H = model.H;
     likelihood->log_det += VelocitySurprise(
         model.y, H * state.covariance.topLeftCorner<kStateSize, kStateSize>() * H.transpose() +
@@ -143,7 +130,7 @@ bool VehicleFilter::Update(const BoxMeasurement& z) {
   }
   if (!UpdateExtended(model, state)) return false;
   if (z.velocity_O_mps) {
-    const Linearized velocity = LinearizeVelocity(state, z);
+    const Linearized velocity = LinearizeBoxVelocity(state.mean.head<kStateSize>(), z);
     const auto fit = EvaluateExtended(velocity, state);
     if (fit && fit->distance_squared < kVelocityGate && !UpdateExtended(velocity, state)) {
       return false;

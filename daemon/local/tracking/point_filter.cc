@@ -36,8 +36,6 @@ constexpr double kPointAcrossSigma_m = 0.2;
 constexpr double kDirectedSpeed_mps = 1.0;
 // One that is none: this sure, in the direction it is known worst.
 constexpr double kStandingSigma_mps = 0.7;
-// Of the unseen part of a point target: see LinearizeRadar.
-constexpr double kUnseenLooks = 8.0;
 
 using Vector = Linearized::Vector;
 using PointJacobian = Eigen::Matrix<double, Eigen::Dynamic, 4, 0, Linearized::kMaxRows, 4>;
@@ -74,9 +72,7 @@ std::optional<PointModel> LinearizePoint(const Eigen::Vector4d& x, const RadarLo
   const Pose<Odometry, Radar> X_OR =
       look.ego.X_OB * Pose<Body, Radar>(look.radar.x_m, look.radar.y_m, look.radar.yaw_rad);
   const Eigen::Matrix2d R_OB = look.ego.X_OB.rotation();
-  const Eigen::Vector2d v_R_O =
-      R_OB * Eigen::Vector2d(look.ego.speed_mps - look.ego.yaw_rate_radps * look.radar.y_m,
-                             look.ego.yaw_rate_radps * look.radar.x_m);
+  const Eigen::Vector2d v_R_O = R_OB * AntennaVelocity_B(look.ego, look.radar);
   const D qx = D::Variable(x[0] - X_OR.x_m(), 0);
   const D qy = D::Variable(x[1] - X_OR.y_m(), 1);
   const D vx = D::Variable(x[2] - v_R_O.x(), 2);
@@ -94,9 +90,7 @@ std::optional<PointModel> LinearizePoint(const Eigen::Vector4d& x, const RadarLo
   out.R = is_exact ? z.covariance : PointNoise(z, look.radar);
   const Eigen::Vector2d line_B =
       R_OB.transpose() * Eigen::Vector2d(qx.value / range.value, qy.value / range.value);
-  const double lever = line_B.y() * look.radar.x_m - line_B.x() * look.radar.y_m;
-  out.R(2, 2) += std::pow(line_B.x() * look.ego.speed_sigma_mps, 2) +
-                 std::pow(lever * look.ego.yaw_rate_sigma_radps, 2);
+  out.R(2, 2) += EgoMotionVariances(look.ego, look.radar, line_B).sum();
   return out;
 }
 

@@ -28,14 +28,11 @@ constexpr double kLone = -1.5;
 // Each decibel below the strongest return in sight makes a place less likely: ln of a ratio.
 constexpr double kPerDecibel = 0.3;
 constexpr double kMostWeaker_db = 20.0;
-constexpr std::size_t kRadarSlots = 32;
 
 // Strength falls with the fourth power of the range.
 double StrengthAtOneMetre(const RadarMeasurement& z) {
   return z.outline[0].strength_db + 40.0 * std::log10(std::max(z.range_m, 1.0));
 }
-
-std::size_t RadarSlot(int radar) { return static_cast<std::size_t>(radar) % kRadarSlots; }
 
 }  // namespace
 
@@ -74,11 +71,11 @@ Tracker::Place Tracker::FindPlace(const Glances& glances) {
     if (misfit) in_sight_.push_back({&at, *misfit, glances.RangeTo(at.fix.p_O)});
   }
   // What a radar sees best there: the face that a vehicle turns to it answers by far the strongest.
-  std::array<double, kRadarSlots> strongest_db;
+  std::array<double, kMostSensorsOfAKind> strongest_db;
   strongest_db.fill(-1e9);
   for (const InSight& seen : in_sight_) {
     if (seen.at->is_moving || seen.misfit > most) continue;
-    double& db = strongest_db[RadarSlot(seen.at->radar)];
+    double& db = strongest_db[static_cast<std::size_t>(seen.at->radar)];
     db = std::max(db, seen.at->strength_db);
   }
   double best_score = 0.0;
@@ -105,7 +102,7 @@ Tracker::Place Tracker::FindPlace(const Glances& glances) {
     const double per_scan = returns / static_cast<double>(std::max<std::size_t>(scans.count(), 1));
     const double plenty = std::clamp((per_scan - kPostReturns) / kMoreReturns, 0.0, 1.0);
     const double weaker_db =
-        std::min(strongest_db[RadarSlot(at.radar)] - at.strength_db, kMostWeaker_db);
+        std::min(strongest_db[static_cast<std::size_t>(at.radar)] - at.strength_db, kMostWeaker_db);
     const double score =
         kLone + plenty * (kSeveral - kLone) - 0.5 * seen.misfit - kPerDecibel * weaker_db;
     if (best_m < 0.0 || score > best_score) {

@@ -174,8 +174,6 @@ void Tracker::AskDetectability(SensorKey sensor, const DetectabilityOf& detectab
 RadarMeasurement Tracker::Given(std::size_t track, const RadarMeasurement& z) const {
   RadarMeasurement given = z;
   given.visible_share = seen_[track].visible_share;
-  given.left_is_covered = seen_[track].left_is_covered;
-  given.right_is_covered = seen_[track].right_is_covered;
   return given;
 }
 
@@ -287,6 +285,7 @@ void Tracker::DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement
       if (std::abs(echo.range_rate_mps - 2.0 * z.range_rate_mps) > kEchoRate_mps) continue;
       if (z.outline[0].strength_db < echo.outline[0].strength_db + kEchoWeaker_db) continue;
       candidates_[j].may_start = false;
+      break;
     }
   }
 }

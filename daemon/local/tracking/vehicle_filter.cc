@@ -64,16 +64,20 @@ double DepthOf(const Linearized& model, const ExtendedState& state) {
 }
 
 std::optional<Linearized> Linearize(const ExtendedState& state, const Extent& extent,
-                                    const RadarLook& look, const RadarMeasurement& z,
-                                    double usual_depth) {
-  auto model = LinearizeRadar(state.mean.head<kStateSize>(), extent, look.ego, look.radar, z);
-  if (model) TemperDepth(DepthOf(*model, state) - usual_depth, *model);
-  return model;
+                                    const RadarLook& look, const RadarMeasurement& z) {
+  return LinearizeRadar(state.mean.head<kStateSize>(), extent, look.ego, look.radar, z);
 }
 std::optional<Linearized> Linearize(const ExtendedState& state, const Extent& extent,
-                                    const CameraLook& look, const CameraMeasurement& z, double) {
+                                    const CameraLook& look, const CameraMeasurement& z) {
   return LinearizeCamera(state.mean.head<kStateSize>(), extent, look.ego, look.camera, z);
 }
+
+// Returns much deeper, or nearer, than they usually are count less.
+void Temper(const RadarMeasurement&, const ExtendedState& state, double usual_depth,
+            Linearized& model) {
+  TemperDepth(DepthOf(model, state) - usual_depth, model);
+}
+void Temper(const CameraMeasurement&, const ExtendedState&, double, Linearized&) {}
 
 Extent AssumedExtent(const ExtendedState& state, const FilterSettings& settings) {
   return settings.point_targets ? Extent{0.0, 0.0, 0.0, 0.0} : state.assumed_extent();
@@ -100,23 +104,24 @@ void Rename(ObjectClass from, ObjectClass to, const Eigen::Vector2d& seen_from_O
   }
 }
 
+// `model`: of the measurement at `state`.
 template <class Look, class Measurement>
-bool UpdateState(const Look& look, const Measurement& z, bool is_young, bool knows_axis,
-                 double usual_depth, const FilterSettings& settings, ExtendedState& state) {
-  auto model = Linearize(state, AssumedExtent(state, settings), look, z, usual_depth);
-  if (!model) return false;
+bool UpdateState(const Look& look, const Measurement& z, const Linearized& model, bool is_young,
+                 bool knows_axis, double usual_depth, const FilterSettings& settings,
+                 ExtendedState& state) {
   ExtendedState next = state;
   unsigned frozen = Frozen(state, look.origin_O());
   // What stands does not turn: where its reflections lie says less of its axis than it seems to.
   if ((!kLearnsSize<Measurement> || knows_axis) && std::abs(state.mean[kSpeed]) < kTurning_mps) {
     frozen |= 1U << kYaw;
   }
-  if (!UpdateExtended(*model, next, kLearnsSize<Measurement>, frozen)) return false;
+  if (!UpdateExtended(model, next, kLearnsSize<Measurement>, frozen)) return false;
   if (is_young) {
     // Iterated EKF, one more round: linearise where the first update went, then apply the result to
     // the prediction.
-    auto again = Linearize(next, AssumedExtent(next, settings), look, z, usual_depth);
+    auto again = Linearize(next, AssumedExtent(next, settings), look, z);
     if (again) {
+      Temper(z, next, usual_depth, *again);
       ExtendedState::Vector back = state.mean - next.mean;
       back[kYaw] = WrapAngle(back[kYaw]);
       again->y -= again->H * back.head<kStateSize>() + again->E * back.segment<2>(kStateSize);
@@ -185,7 +190,7 @@ std::optional<Likelihood> EvaluateOddSize(const CameraLook& look, const CameraMe
   if (!(named.distance_squared > kOddBox)) return std::nullopt;
   ExtendedState open = state;
   ReopenSize(IsWider(look, z, state), look.origin_O(), open);
-  const auto model = Linearize(open, open.assumed_extent(), look, z, 0.0);
+  const auto model = Linearize(open, open.assumed_extent(), look, z);
   if (!model) return std::nullopt;
   auto likelihood = EvaluateExtended(*model, open);
   if (!likelihood) return std::nullopt;
@@ -331,8 +336,9 @@ std::optional<Likelihood> VehicleFilter::Evaluate(const Look& look, const Measur
         state = &named;
       }
     }
-    const auto model = Linearize(*state, AssumedExtent(*state, settings), look, z, usual_depth_);
+    auto model = Linearize(*state, AssumedExtent(*state, settings), look, z);
     if (!model) continue;
+    Temper(z, *state, usual_depth_, *model);
     auto likelihood = EvaluateExtended(*model, *state);
     if (!likelihood) continue;
     if constexpr (kLearnsSize<Measurement>) {
@@ -360,7 +366,7 @@ bool VehicleFilter::IsOdd(const Look& look, const Measurement& z,
                           const FilterSettings& settings) const {
   if constexpr (kLearnsSize<Measurement>) {
     if (settings.point_targets) return false;
-    const auto model = Linearize(best(), AssumedExtent(best(), settings), look, z, 0.0);
+    const auto model = Linearize(best(), AssumedExtent(best(), settings), look, z);
     const auto named = model ? EvaluateExtended(*model, best()) : std::nullopt;
     return named && EvaluateOddSize(look, z, *named, best());
   } else {
@@ -388,22 +394,25 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, bool is_young
   } else if (kLearnsSize<Measurement>) {
     odd_boxes_ = 0;
   }
-  NoteDepth(look, z, settings);
   std::array<double, kMostAxes> fit{};
   std::size_t kept = 0;
   Span best_fit = Span::kTooDeep;
   for (std::size_t i = 0; i < count_; ++i) {
     Component& component = components_[i];
+    auto model = Linearize(component.state, AssumedExtent(component.state, settings), look, z);
+    if (!model) continue;
+    if (i == 0) NoteDepth(z, *model);
+    Temper(z, component.state, usual_depth_, *model);
     double log_likelihood = 0.0;
     if (count_ > 1 && SpeaksOfAxis(z)) {
-      const auto model = Linearize(component.state, AssumedExtent(component.state, settings), look,
-                                   z, usual_depth_);
-      const auto likelihood = model ? EvaluateExtended(*model, component.state) : std::nullopt;
+      const auto likelihood = EvaluateExtended(*model, component.state);
       if (!likelihood) continue;
       log_likelihood = -0.5 * (likelihood->distance_squared + likelihood->log_det);
     }
-    if (!UpdateState(look, z, is_young, has_driven_, usual_depth_, settings, component.state))
+    if (!UpdateState(look, z, *model, is_young, has_driven_, usual_depth_, settings,
+                     component.state)) {
       continue;
+    }
     KeepInside(look, z, settings, component.state);
     best_fit = std::min(best_fit, LearnSpan(look, z, settings, component.state));
     fit[kept] = log_likelihood;
@@ -424,17 +433,12 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, bool is_young
   return true;
 }
 
-// Where scan after scan lies deep (or near), it is the filter that is off.
-template <class Look, class Measurement>
-void VehicleFilter::NoteDepth(const Look& look, const Measurement& z,
-                              const FilterSettings& settings) {
-  if constexpr (!kLearnsSize<Measurement>) {
-    const auto model = LinearizeRadar(best().mean.head<kStateSize>(),
-                                      AssumedExtent(best(), settings), look.ego, look.radar, z);
-    if (!model || model->O.rows() == 0) return;
-    const double depth = std::clamp(DepthOf(*model, best()), -kMostDepth, kMostDepth);
-    usual_depth_ += kDepthMemory * (depth - usual_depth_);
-  }
+// Where scan after scan lies deep (or near), it is the filter that is off. `model`: of the
+// likeliest component.
+void VehicleFilter::NoteDepth(const RadarMeasurement&, const Linearized& model) {
+  if (model.O.rows() == 0) return;
+  const double depth = std::clamp(DepthOf(model, best()), -kMostDepth, kMostDepth);
+  usual_depth_ += kDepthMemory * (depth - usual_depth_);
 }
 
 // New weights; drops the components that lost, and one of two that have come to agree.

@@ -98,8 +98,8 @@ class VehicleFilter {
   };
   template <class Look, class Measurement>
   bool IsOdd(const Look& look, const Measurement& z, const FilterSettings& settings) const;
-  template <class Look, class Measurement>
-  void NoteDepth(const Look& look, const Measurement& z, const FilterSettings& settings);
+  void NoteDepth(const RadarMeasurement& z, const Linearized& model);
+  void NoteDepth(const CameraMeasurement&, const Linearized&) {}
   void Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O);
   void Weigh(std::span<const double> log_likelihoods);
   void TurnRound();
