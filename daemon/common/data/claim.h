@@ -30,7 +30,7 @@ struct Claim {
   double accel_mps2 = 0.0;
   double yaw_rate_radps = 0.0;    ///< Left positive.
   double position_sigma_m = 2.0;  ///< Per axis, reported accuracy clamped to what we believe.
-  bool accuracy_is_poor = false;  ///< Reported worse than we ever believe: its place is of no use.
+  bool accuracy_is_poor = false;  ///< Reported so bad that its place is of no use.
   std::optional<double> length_m;
   std::optional<double> width_m;
   TrackEvents events = 0;

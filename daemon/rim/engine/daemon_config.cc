@@ -146,6 +146,9 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
   if (v2v.min_position_sigma_m > v2v.max_position_sigma_m) {
     checks.Problem("v2v.min_position_sigma_m", "must be at most max_position_sigma_m");
   }
+  if (v2v.max_position_sigma_m > v2v.usable_position_sigma_m) {
+    checks.Problem("v2v.max_position_sigma_m", "must be at most usable_position_sigma_m");
+  }
   const double settled_s =
       config.perception.timeline.replay_buffer_s + config.perception.timeline.future_s;
   if (config.gps_bias.estimate_age_s < settled_s) {

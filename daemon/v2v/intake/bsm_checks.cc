@@ -106,7 +106,7 @@ Claim ToClaim(const Bsm& bsm, double age_s, const IntakeConfig& config) {
           ? std::clamp(*bsm.semi_major_m, config.min_position_sigma_m,
                        std::max(config.min_position_sigma_m, config.max_position_sigma_m))
           : config.unknown_position_sigma_m;
-  claim.accuracy_is_poor = bsm.semi_major_m.value_or(0.0) > config.max_position_sigma_m;
+  claim.accuracy_is_poor = bsm.semi_major_m.value_or(0.0) > config.usable_position_sigma_m;
   claim.length_m = bsm.length_m;
   claim.width_m = bsm.width_m;
   claim.events = bsm.events;

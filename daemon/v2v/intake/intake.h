@@ -35,6 +35,7 @@ struct IntakeConfig {
   double sender_timeout_s = 5.0;
   double min_position_sigma_m = 0.5;  ///< Reported accuracy is clamped to this range.
   double max_position_sigma_m = 3.0;
+  double usable_position_sigma_m = 6.0;  ///< A place told to be worse is neither used nor judged.
   double unknown_position_sigma_m = 2.0;
   bool message_verdicts = false;  ///< Report of every message what became of it.
   std::uint32_t own_id = 0;       ///< Our own TemporaryID where fixed; 0 = unknown.
@@ -56,6 +57,7 @@ struct IntakeConfig {
     a.Field("sender_timeout_s", sender_timeout_s, {.above = 0.5, .at_most = 60.0});
     a.Field("min_position_sigma_m", min_position_sigma_m, {.above = 0.0, .at_most = 10.0});
     a.Field("max_position_sigma_m", max_position_sigma_m, {.above = 0.0, .at_most = 20.0});
+    a.Field("usable_position_sigma_m", usable_position_sigma_m, {.above = 0.0, .at_most = 20.0});
     a.Field("unknown_position_sigma_m", unknown_position_sigma_m, {.above = 0.0, .at_most = 20.0});
     a.Field("message_verdicts", message_verdicts);
     a.Field("checks", checks);

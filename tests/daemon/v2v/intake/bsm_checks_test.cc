@@ -126,7 +126,8 @@ TEST(ToClaim, ReportedAccuracyIsClampedAndNeverWidensTheGate) {
   EXPECT_EQ(claim(12.7).position_sigma_m, 3.0);
   EXPECT_EQ(claim(std::nullopt).position_sigma_m, 2.0);
   EXPECT_FALSE(claim(2.95).accuracy_is_poor);
-  EXPECT_TRUE(claim(3.05).accuracy_is_poor);
+  EXPECT_FALSE(claim(5.9).accuracy_is_poor);  // Phones and plain receivers: residuals show.
+  EXPECT_TRUE(claim(6.1).accuracy_is_poor);
   EXPECT_TRUE(claim(9.3).accuracy_is_poor);  // Two parked cars in the real logs say so.
   EXPECT_FALSE(claim(std::nullopt).accuracy_is_poor);
 }

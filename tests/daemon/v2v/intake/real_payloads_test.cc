@@ -90,7 +90,7 @@ TEST(RealPayloads, EveryOneIsJudgedByItsContent) {
     EXPECT_NEAR(HorizontalDistance(ego.p_E, claim->p_E), 50.0, 1e-3) << n;
     EXPECT_EQ(claim->has_course, bsm.course_rad.has_value());
     without_course += claim->has_course ? 0 : 1;
-    EXPECT_EQ(claim->accuracy_is_poor, bsm.semi_major_m.value_or(0.0) > 3.0) << n;
+    EXPECT_EQ(claim->accuracy_is_poor, bsm.semi_major_m.value_or(0.0) > 6.0) << n;
     if (bsm.transmission == Transmission::kReverse) {
       ++in_reverse;
       EXPECT_LE(claim->speed_mps, 0.0) << n;
