@@ -45,6 +45,7 @@ struct RadarMeasurement {
   /// Share of the vehicle that this frame could observe, by azimuth; set once a track is given it.
   /// The rest lies past the field of view or is occluded.
   double visible_share = 1.0;
+  bool may_be_anothers = false;  ///< Lies in the box of another tracked vehicle.
 };
 
 /// One camera box as angles in the levelled camera frame: origin at the optical centre, x along

@@ -16,6 +16,8 @@ constexpr double kTentativeHold_s = 0.1;
 // So many clusters out of another vehicle's box, and a track is no vehicle.
 constexpr int kMostBorrowed = 5;
 constexpr double kBorrowedAside_m = 0.3;
+// Vehicles one behind the other overlap by less than this.
+constexpr double kOverlap_m = 1.0;
 // A centre counts as inside of a box this far behind its ends.
 constexpr double kInside_m = 0.5;
 constexpr double kMaxEndDoubt_m = 1.5;
@@ -69,6 +71,23 @@ void Tracker::DropDuplicates(double dt_s) {
   }
 }
 
+// Whether a place lies in the box of a vehicle other than track i, or where its end may be.
+bool Tracker::IsInAnothersBox(std::size_t i, const Eigen::Vector2d& p_O) const {
+  for (std::size_t j = 0; j < tracks_.size(); ++j) {
+    if (j == i || !tracks_[j].is_confirmed || !hidden_[j].filter.is_vehicle()) continue;
+    const LocalTrack& other = tracks_[j];
+    const Eigen::Vector2d from = p_O - other.state_O.mean.head<2>();
+    if (from.squaredNorm() > kLongestVehicle_m * kLongestVehicle_m) continue;
+    const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-other.state_O.mean[kYaw]) * from;
+    const double beyond_m = std::min(other.extent.length_sigma_m, kMaxEndDoubt_m) + kInside_m;
+    if (std::abs(inside.x()) < 0.5 * other.extent.length_m + beyond_m &&
+        std::abs(inside.y()) < 0.5 * other.extent.width_m + kBorrowedAside_m) {
+      return true;
+    }
+  }
+  return false;
+}
+
 // Whether the last reflection of track i came out of the box of track j, its senior: it may live on
 // what a lorry's flank reflects without ever being where the lorry is.
 bool Tracker::Borrows(std::size_t i, std::size_t j) const {
@@ -76,13 +95,38 @@ bool Tracker::Borrows(std::size_t i, std::size_t j) const {
   if (i == j || hidden_[i].reflected != now_ || hidden_[j].is_dead || !owner.is_confirmed) {
     return false;
   }
-  if (!hidden_[j].filter.is_vehicle() || !IsSenior(owner, tracks_[i]) || SeenAsTwo(j, i)) {
+  if (!hidden_[j].filter.is_vehicle() || SeenAsTwo(j, i)) return false;
+  const auto lies_within = [this](const Eigen::Vector2d& p_O, std::size_t k) {
+    const LocalTrack& track = tracks_[k];
+    const Eigen::Vector2d inside =
+        Eigen::Rotation2D<double>(-track.state_O.mean[kYaw]) * (p_O - track.state_O.mean.head<2>());
+    return std::abs(inside.x()) < 0.5 * track.extent.length_m &&
+           std::abs(inside.y()) < 0.5 * track.extent.width_m + kBorrowedAside_m;
+  };
+  if (!lies_within(hidden_[i].reflection_O, j)) return false;
+  if (IsSenior(owner, tracks_[i])) return true;
+  // The elder may stand behind, fed by what lies inside of the nearer one, whose face it lost.
+  // Directions that no picture supports put ends anywhere.
+  if (tracks_[i].camera_hits() == 0 || owner.camera_hits() == 0) return false;
+  if (!hidden_[i].filter.is_vehicle() || tracks_[i].extent.length_sigma_m > kMaxEndDoubt_m ||
+      owner.extent.length_sigma_m > kMaxEndDoubt_m) {
     return false;
   }
-  const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-owner.state_O.mean[kYaw]) *
-                                 (hidden_[i].reflection_O - owner.state_O.mean.head<2>());
-  return std::abs(inside.x()) < 0.5 * owner.extent.length_m &&
-         std::abs(inside.y()) < 0.5 * owner.extent.width_m + kBorrowedAside_m;
+  const bool is_fresh = ToSeconds(now_ - hidden_[j].reflected) <= kFreshReflection_s;
+  const double difference =
+      (hidden_[i].filter.velocity_O() - hidden_[j].filter.velocity_O()).norm();
+  const Eigen::Vector2d seen_from_O = hidden_[i].filter.seen_from_O();
+  const auto distance_m = [&](std::size_t k) {
+    return (tracks_[k].state_O.mean.head<2>() - seen_from_O).norm();
+  };
+  const Eigen::Vector2d between =
+      Eigen::Rotation2D<double>(-owner.state_O.mean[kYaw]) *
+      (tracks_[i].state_O.mean.head<2>() - owner.state_O.mean.head<2>());
+  const double needed_m = 0.5 * (owner.extent.length_m + tracks_[i].extent.length_m);
+  if (std::abs(between.x()) > needed_m - kOverlap_m) return false;
+  return is_fresh && difference < kPartSpeed_mps && distance_m(j) < distance_m(i) &&
+         !lies_within(hidden_[j].reflection_O, i) &&
+         !tracks_[i].support.SharesFrame(owner.support, SensorKind::kCamera);
 }
 
 // Whether track i stands in the place of track j, its senior, and moves with it.

@@ -321,7 +321,8 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
 
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (assigned_[i] < 0) continue;
-    const RadarMeasurement z = Given(i, joined_[i]);
+    RadarMeasurement z = Given(i, joined_[i]);
+    z.may_be_anothers = IsInAnothersBox(i, candidates_[static_cast<std::size_t>(assigned_[i])].p_O);
     if (!hidden_[i].filter.Update(look, z, settings_)) {
       failures_.push_back(Reason::kTrackNumerics);
       hidden_[i].is_dead = true;

@@ -292,6 +292,7 @@ class Tracker {
                        std::span<const CameraMeasurement> measurements);
   [[nodiscard]] int Hits(std::size_t track) const;
   [[nodiscard]] bool Borrows(std::size_t i, std::size_t j) const;
+  [[nodiscard]] bool IsInAnothersBox(std::size_t i, const Eigen::Vector2d& p_O) const;
   [[nodiscard]] bool IsConvincing(std::size_t track) const;
   void Conclude(double dt_s);
   void DropUnlikely();

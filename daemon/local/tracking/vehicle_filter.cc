@@ -38,6 +38,11 @@ constexpr double kLengthShows = 0.3;
 // Memory of how deep the returns lie, per scan, and the most that one scan adds to it.
 constexpr double kDepthMemory = 0.1;
 constexpr double kMostDepth = 6.0;
+// Nothing of a vehicle lies before its near face: returns that lie nearer than it scan after scan,
+// by so many standard deviations and metres, say where it is.
+constexpr double kNearerSigmas = 2.0;
+constexpr double kNearer_m = 0.7;
+constexpr double kFaceSigma_m = 0.4;
 // Slower than this a vehicle hardly turns.
 constexpr double kTurning_mps = 1.0;
 // Axes of a standing vehicle: most stand along the road or across it.
@@ -172,6 +177,30 @@ Span LearnSpan(const RadarLook& look, const RadarMeasurement& z, const FilterSet
 }
 Span LearnSpan(const CameraLook&, const CameraMeasurement&, const FilterSettings&, ExtendedState&) {
   return Span::kFits;
+}
+
+// Puts the near face where the returns are, `nearer_m` before where it was thought to be. Its other
+// end is as far behind as the length says, and as little known.
+void FaceAt(double nearer_m, const Eigen::Vector2d& seen_from_O, ExtendedState& state) {
+  const Eigen::Vector2d u = (state.mean.head<2>() - seen_from_O).normalized();
+  const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
+  const Eigen::Vector2d behind = forward.dot(u) > 0.0 ? forward : Eigen::Vector2d(-forward);
+  state.mean.head<2>() -= nearer_m * u;
+  // Along the line of sight what was known of the place is void; across it stays.
+  auto& P = state.covariance;
+  const Eigen::Matrix2d across = Eigen::Matrix2d::Identity() - u * u.transpose();
+  const Eigen::Matrix<double, 2, ExtendedState::kSize> rows = across * P.topRows<2>();
+  const Eigen::Matrix2d kept = across * P.topLeftCorner<2, 2>() * across;
+  P.topRows<2>() = rows;
+  P.leftCols<2>() = rows.transpose();
+  const double along = std::abs(forward.dot(u));
+  const double length_variance = P(ExtendedState::kLength, ExtendedState::kLength);
+  const Eigen::Vector2d by_length = 0.5 * along * behind;
+  P.topLeftCorner<2, 2>() = kept + kFaceSigma_m * kFaceSigma_m * u * u.transpose() +
+                            length_variance * by_length * by_length.transpose();
+  const Eigen::Vector2d tie = length_variance * by_length;
+  P.block<2, 1>(0, ExtendedState::kLength) += tie;
+  P.block<1, 2>(ExtendedState::kLength, 0) += tie.transpose();
 }
 
 // Whether a box is wider than this vehicle would show itself.
@@ -397,11 +426,18 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, bool is_young
   std::array<double, kMostAxes> fit{};
   std::size_t kept = 0;
   Span best_fit = Span::kTooDeep;
+  bool is_refit = false;
   for (std::size_t i = 0; i < count_; ++i) {
     Component& component = components_[i];
     auto model = Linearize(component.state, AssumedExtent(component.state, settings), look, z);
     if (!model) continue;
     if (i == 0) NoteDepth(z, *model);
+    if (IsBeforeFace(z, *model)) {
+      FaceAt(-model->y[0], look.origin_O(), component.state);
+      model = Linearize(component.state, AssumedExtent(component.state, settings), look, z);
+      if (!model) continue;
+      is_refit = true;
+    }
     Temper(z, component.state, usual_depth_, *model);
     double log_likelihood = 0.0;
     if (count_ > 1 && SpeaksOfAxis(z)) {
@@ -421,6 +457,7 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, bool is_young
   }
   if (kept == 0) return false;
   count_ = kept;
+  if (is_refit) usual_depth_ = 0.0;
   if (best_fit != Span::kFits) {
     odd_spans_ += kOddSpanWeight;
   } else if (!is_deep_) {
@@ -439,6 +476,11 @@ void VehicleFilter::NoteDepth(const RadarMeasurement&, const Linearized& model) 
   if (model.O.rows() == 0) return;
   const double depth = std::clamp(DepthOf(model, best()), -kMostDepth, kMostDepth);
   usual_depth_ += kDepthMemory * (depth - usual_depth_);
+}
+
+bool VehicleFilter::IsBeforeFace(const RadarMeasurement& z, const Linearized& model) const {
+  return !z.may_be_anothers && model.O.rows() > 0 && usual_depth_ < -kNearerSigmas &&
+         model.y[0] < -kNearer_m;
 }
 
 // New weights; drops the components that lost, and one of two that have come to agree.

@@ -100,6 +100,10 @@ class VehicleFilter {
   bool IsOdd(const Look& look, const Measurement& z, const FilterSettings& settings) const;
   void NoteDepth(const RadarMeasurement& z, const Linearized& model);
   void NoteDepth(const CameraMeasurement&, const Linearized&) {}
+  [[nodiscard]] bool IsBeforeFace(const RadarMeasurement& z, const Linearized& model) const;
+  [[nodiscard]] bool IsBeforeFace(const CameraMeasurement&, const Linearized&) const {
+    return false;
+  }
   void Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O);
   void Weigh(std::span<const double> log_likelihoods);
   void TurnRound();

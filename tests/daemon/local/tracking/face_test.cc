@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nothing of a vehicle lies before its near face, and nothing of it is a second vehicle.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "daemon/local/tracking/vehicle_filter.h"
+#include "tests/daemon/local/tracking/scene.h"
+
+namespace v2vouch {
+namespace {
+
+constexpr double kFace_m = 76.0;  // Of a standing lorry ahead, from the antenna.
+constexpr double kDepth_m = 0.1;  // Mean depth of strong returns behind the outline.
+
+RadarMeasurement FaceReturn(double range_m) {
+  RadarMeasurement z;
+  z.returns = 1;
+  z.range_m = range_m;
+  z.outline[z.outline_count++] = {range_m, 0.0, 40.0};
+  z.covariance = Eigen::Vector3d(0.06, 1e-5, 0.02).asDiagonal();
+  return z;
+}
+
+// Its place was once learnt without its length: the filter thinks that it knows the centre, six
+// metres too far, and would have every range explain the length, which a radar may not learn.
+BoxMeasurement LorryTooFar() {
+  BoxMeasurement box;
+  box.x_m = kFace_m + 0.5 * 8.3 + 6.3;
+  box.y_m = 0.0;
+  box.yaw_rad = 0.0;
+  box.length_m = 11.0;
+  box.width_m = 2.5;
+  box.length_sigma_m = 3.5;
+  box.position_covariance = 0.05 * Eigen::Matrix2d::Identity();
+  return box;
+}
+
+double NearFace(const VehicleFilter& filter) {
+  const ExtendedState& state = filter.best();
+  return state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength];
+}
+
+TEST(NearFace, ReturnsBeforeItScanAfterScanBringAVehicleToWhereTheyAre) {
+  RadarConfig radar;
+  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
+  const EgoState ego;
+  const RadarLook look(ego, radar);
+  VehicleFilter filter;
+  filter.StartAt(LorryTooFar());
+  for (int scan = 0; scan < 60; ++scan) {
+    filter.Predict(0.05, {});
+    ASSERT_TRUE(filter.Update(look, FaceReturn(kFace_m + kDepth_m), false, {}));
+  }
+  EXPECT_NEAR(NearFace(filter), kFace_m, 0.5);
+}
+
+TEST(NearFace, ReturnsOutOfAnothersBoxMoveNoVehicle) {
+  RadarConfig radar;
+  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
+  const EgoState ego;
+  const RadarLook look(ego, radar);
+  VehicleFilter own, anothers;
+  own.StartAt(LorryTooFar());
+  anothers = own;
+  for (int scan = 0; scan < 60; ++scan) {
+    RadarMeasurement z = FaceReturn(kFace_m + kDepth_m);
+    own.Predict(0.05, {});
+    anothers.Predict(0.05, {});
+    ASSERT_TRUE(own.Update(look, z, false, {}));
+    z.may_be_anothers = true;
+    ASSERT_TRUE(anothers.Update(look, z, false, {}));
+  }
+  EXPECT_GT(NearFace(anothers), NearFace(own) + 0.5);
+}
+
+TEST(NearFace, ScatterBehindItLeavesAVehicleWhereItIs) {
+  RadarConfig radar;
+  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
+  const EgoState ego;
+  const RadarLook look(ego, radar);
+  VehicleFilter filter;
+  BoxMeasurement box = LorryTooFar();
+  box.x_m = kFace_m + 5.5;
+  filter.StartAt(box);
+  Random random(7);
+  double nearest_m = 1e9;
+  for (int scan = 0; scan < 400; ++scan) {
+    filter.Predict(0.05, {});
+    const double deep_m = std::abs(random.Normal(0.0, 0.3));
+    ASSERT_TRUE(filter.Update(look, FaceReturn(kFace_m + deep_m), false, {}));
+    nearest_m = std::min(nearest_m, NearFace(filter));
+  }
+  EXPECT_GT(nearest_m, kFace_m - 0.6);
+}
+
+}  // namespace
+}  // namespace v2vouch
