@@ -25,6 +25,7 @@ struct Candidate {
   double reach_m = 0.0;          ///< Coarse gate of the measurement alone.
   double log_density = 0.0;      ///< ln of clutter and births per unit of the measurement's space.
   double birth_existence = 0.0;  ///< Of a track it would start.
+  bool is_echo = false;          ///< May be the second echo of a vehicle at half the range.
   bool may_start = false;
 };
 

@@ -42,6 +42,8 @@ constexpr double kEchoSigmas = 3.0;
 constexpr double kEchoBearing_rad = 0.01;
 constexpr double kEchoRate_mps = 0.6;
 constexpr double kEchoWeaker_db = 10.0;
+// For so long second echoes alone keep a vehicle.
+constexpr double kEchoAlone_s = 1.0;
 // How long a hidden track is kept for each second it was known.
 constexpr double kHoldPerKnown = 3.0;
 constexpr double kLeastHold_s = 0.3;
@@ -273,7 +275,8 @@ void Tracker::PrepareRadar(const RadarLook& look, std::span<const RadarMeasureme
 }
 
 // What is reflected between the car and the vehicle before it comes back from twice as far, at
-// twice the range rate, in the same direction and weaker: it starts nothing.
+// twice the range rate, in the same direction and weaker: it starts nothing, and by itself it keeps
+// nothing alive.
 void Tracker::DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement> measurements) {
   const double bearing_rad = kEchoSigmas * look.radar.azimuth_sigma_rad + kEchoBearing_rad;
   for (std::size_t j = 0; j < measurements.size(); ++j) {
@@ -285,6 +288,7 @@ void Tracker::DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement
       if (std::abs(echo.range_rate_mps - 2.0 * z.range_rate_mps) > kEchoRate_mps) continue;
       if (z.outline[0].strength_db < echo.outline[0].strength_db + kEchoWeaker_db) continue;
       candidates_[j].may_start = false;
+      candidates_[j].is_echo = true;
       break;
     }
   }
@@ -308,7 +312,9 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
     if (is_guess && hidden_[i].glances.size() < Glances::kMost) continue;
     const bool takes_standing = tracks_[i].camera_hits() + tracks_[i].object_hits() > 0 ||
                                 hidden_[i].moving_hits >= config_.confirm_hits;
+    const bool is_echo_alone = ToSeconds(now_ - hidden_[i].borne_out) > kEchoAlone_s;
     candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m, [&](std::size_t j) {
+      if (candidates_[j].is_echo && is_echo_alone) return;
       if (measurements[j].is_static ? takes_standing : !is_guess) {
         GatePair(i, j, look, measurements[j]);
       }
@@ -328,7 +334,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
       hidden_[i].is_dead = true;
       continue;
     }
-    Hit(i, sensor);
+    Hit(i, sensor, candidates_[static_cast<std::size_t>(assigned_[i])].is_echo);
     // A post in the vehicle's place would have been seen as well.
     Hidden& hidden = hidden_[i];
     if (z.is_static) {
@@ -530,8 +536,9 @@ void Tracker::StartFromCamera(const CameraLook& look, int camera,
   }
 }
 
-void Tracker::Hit(std::size_t track, SensorKey sensor) {
+void Tracker::Hit(std::size_t track, SensorKey sensor, bool is_echo) {
   hidden_[track].last_hit = now_;
+  if (!is_echo) hidden_[track].borne_out = now_;
   tracks_[track].support.Add(sensor, now_);
 }
 

@@ -190,6 +190,7 @@ class Tracker {
     double proven = 0.0;  // Existence by pictures and motion alone.
     Eigen::Vector2d reflection_O = Eigen::Vector2d::Zero();  // Last cluster it was given,
     Timestamp reflected{};                                   // and when.
+    Timestamp borne_out{};    // Last hit by what is no second echo of another.
     int borrowed = 0;         // Clusters out of an older vehicle's box, own ones taken off twice.
     int clear_hits = 0;       // Radar clusters from where the radar can see.
     int not_pictured = 0;     // Pictures that ought to have shown it.
@@ -272,7 +273,7 @@ class Tracker {
   };
   [[nodiscard]] Place FindPlace(const Glances& glances);
   void LearnRange(std::size_t track, const CameraLook& look, const CameraMeasurement& z);
-  void Hit(std::size_t track, SensorKey sensor);
+  void Hit(std::size_t track, SensorKey sensor, bool is_echo = false);
   void Vote(std::size_t track, ObjectClass object_class, double score);
   /// False when the table is full.
   bool Start(const TrackFilter& filter, SensorKey sensor, std::size_t index, double existence);
