@@ -28,6 +28,7 @@ LIBRARIES = {
     "json": r"nlohmann/.*",
     "geographic": r"GeographicLib/.*",
     "zlib": r"zlib\.h",
+    "zstd": r"zstd\.h",
     "openssl": r"openssl/.*",
     "pcap": r"pcap/.*|pcap\.h",
     "ceres": r"(ceres|glog)/.*",
