@@ -61,17 +61,12 @@ void Writer::EmitRecord(Opcode opcode) {
   content_.clear();
 }
 
-void Writer::AppendToChunk(Opcode opcode, std::span<const std::uint8_t> content) {
-  PutRecordHeader(chunk_, opcode, content.size());
-  Fields(chunk_).Raw(content);
-}
-
+// Outside the chunks: a damaged chunk costs its own messages only.
 std::optional<std::uint16_t> Writer::AddSchema(Schema schema) {
   if (schemas_.size() >= kMostIds) return std::nullopt;
   schema.id = static_cast<std::uint16_t>(schemas_.size() + 1);
   PutSchema(content_, schema);
-  AppendToChunk(Opcode::kSchema, content_);
-  content_.clear();
+  EmitRecord(Opcode::kSchema);
   schemas_.push_back(std::move(schema));
   return schemas_.back().id;
 }
@@ -80,8 +75,7 @@ std::optional<std::uint16_t> Writer::AddChannel(Channel channel) {
   if (channels_.size() >= kMostIds) return std::nullopt;
   channel.id = static_cast<std::uint16_t>(channels_.size() + 1);
   PutChannel(content_, channel);
-  AppendToChunk(Opcode::kChannel, content_);
-  content_.clear();
+  EmitRecord(Opcode::kChannel);
   channels_.push_back(std::move(channel));
   counts_.push_back(0);
   return channels_.back().id;

@@ -63,7 +63,6 @@ class Writer {
 
   void Emit(std::span<const std::uint8_t> bytes);
   void EmitRecord(Opcode opcode);
-  void AppendToChunk(Opcode opcode, std::span<const std::uint8_t> content);
   void EmitSummary();
 
   Sink sink_;
