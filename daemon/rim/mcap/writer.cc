@@ -39,6 +39,11 @@ void PutChannel(std::vector<std::uint8_t>& bytes, const Channel& channel) {
 
 Writer::Writer(Sink sink, WriterOptions options)
     : sink_(std::move(sink)), options_(std::move(options)) {
+  // A reader takes whole chunks, and the whole list of chunks: half a megabyte in the file keeps
+  // opening and one chunk together below a megabyte in a file of 1 GB.
+  if (options_.chunk_bytes == 0) {
+    options_.chunk_bytes = options_.compression == Compression::kNone ? 1U << 19U : 1U << 20U;
+  }
   Emit(kMagic);
   Fields fields(content_);
   fields.Put(std::string_view());  // No profile is registered for LCM.
