@@ -91,6 +91,7 @@ void DrawGround(Svg& svg, const Evaluation& evaluation, const Window& window) {
     svg.Circle(ego.x(), ego.y(), ring_m * window.scale(),
                "fill=\"none\" stroke=\"#cfd5dc\" stroke-dasharray=\"1 3\"");
     const Eigen::Vector2d label = window.FromBody(ring_m, 0.0);
+    if (label.y() < kTitle + 4.0) continue;  // Its letters would be cut.
     svg.Text(label.x() + 3.0, label.y() + 10.0, Number(ring_m) + " m", "class=\"ring\"");
   }
 }
@@ -331,13 +332,13 @@ std::string BirdsEyeLegend() {
     x += width;
   };
   svg.Rect(x, 6.0, 20.0, 10.0, std::string("fill=\"") + colour::kInk + "\"");
-  text("ego", 66.0);
+  text("ego", 70.0);
   svg.Rect(x, 6.0, 20.0, 10.0, kTruthStyle);
   text("true vehicle", 124.0);
   svg.Rect(x, 6.0, 20.0, 10.0, kHiddenStyle);
-  text("hidden", 78.0);
+  text("hidden", 90.0);
   svg.Rect(x, 6.0, 20.0, 10.0, kOutOfViewStyle);
-  text("out of view", 104.0);
+  text("out of view", 116.0);
   svg.Rect(x, 6.0, 20.0, 10.0, Stroke(colour::kLocal, "1.6"));
   text("LOCAL track", 126.0);
   svg.Rect(x, 6.0, 20.0, 10.0, Stroke(colour::kPriority, "2"));

@@ -97,8 +97,7 @@ std::string LogReportHtml(const RunLog& log, const LogFacts& facts,
   std::string out =
       PageHead("recorded drive", Number(log.log_seconds, 1) + " s, " + std::to_string(log.events) +
                                      " events, no truth");
-  out +=
-      Card("What happened", "", "<p class=\"story\">" + Escape(StoryWithoutTruth(log)) + "</p>\n");
+  out += Card("What happened", "", StoryHtml(StoryWithoutTruth(log)));
   if (!pictures.empty()) out += Card("Through the camera", kCameraNote, PicturesHtml(pictures));
   out +=
       Card("PRIORITY: held when", "Pale red and violet: kept by its BSMs while no sensor sees it.",

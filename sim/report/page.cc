@@ -40,6 +40,22 @@ std::string Card(const std::string& title, const std::string& text, const std::s
          (text.empty() ? "" : "<p class=\"note\">" + text + "</p>\n") + body + "</section>\n";
 }
 
+std::string StoryHtml(const std::string& story) {
+  std::string html;
+  const std::string text = Escape(story);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_after_digit = i > 0 && text[i - 1] >= '0' && text[i - 1] <= '9';
+    const bool is_unit =
+        i + 1 < text.size() && (text[i + 1] == 's' || text[i + 1] == 'm' || text[i + 1] == '%');
+    if (text[i] == ' ' && is_after_digit && is_unit) {
+      html += "&nbsp;";
+    } else {
+      html += text[i];
+    }
+  }
+  return "<p class=\"story\">" + html + "</p>\n";
+}
+
 std::string PicturesHtml(const std::vector<ReportPicture>& pictures) {
   std::string out;
   for (const ReportPicture& picture : pictures) {

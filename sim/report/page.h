@@ -17,6 +17,8 @@ std::string PageHead(const std::string& title, const std::string& sub);
 std::string PageFoot();
 /// One section; `text` may hold HTML.
 std::string Card(const std::string& title, const std::string& text, const std::string& body);
+/// The story as a paragraph; no line ends between a figure and its unit.
+std::string StoryHtml(const std::string& story);
 std::string PicturesHtml(const std::vector<ReportPicture>& pictures);
 
 }  // namespace v2vouch::evaluation

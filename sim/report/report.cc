@@ -173,8 +173,7 @@ std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
           " instants at 20 Hz, " +
           (evaluation.log.specs.has_ideal_points ? "ideal point targets" : "extended vehicles") +
           ", disc of " + Number(evaluation.settings.radius_m) + " m round the ego");
-  out += Card("What happened", "",
-              "<p class=\"story\">" + Escape(Story(evaluation, liars)) + "</p>\n");
+  out += Card("What happened", "", StoryHtml(Story(evaluation, liars)));
   out += Card(
       "The scene",
       "From above, ego heading up. Moments are chosen around the V2V vehicle that no sensor sees "
