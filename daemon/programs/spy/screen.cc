@@ -118,7 +118,8 @@ void Screen::Draw(const Moment& moment, const std::string& title) {
   const auto channels = Channels(moment);
   if (opened_.empty()) {
     selected_ = std::min(selected_, channels.empty() ? 0 : channels.size() - 1);
-    const auto lines = TableLines(moment, filter_);
+    constexpr std::size_t kWideTable = 111;
+    const auto lines = TableLines(moment, filter_, columns < kWideTable);
     put(title + (filter_.empty() && !is_filtering_ ? "" : "  filter: " + filter_));
     put(lines.front());
     const auto refusals = RefusalLines(moment);

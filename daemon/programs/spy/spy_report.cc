@@ -47,20 +47,27 @@ nlohmann::json Number(double value) {
 
 }  // namespace
 
-std::vector<std::string> TableLines(const Moment& moment, const std::string& filter) {
+std::vector<std::string> TableLines(const Moment& moment, const std::string& filter,
+                                    bool is_narrow) {
+  const auto line = [&](const std::string& channel, const std::string& type,
+                        const std::string& messages, const std::string& rest) {
+    if (is_narrow) return Format("%-24s", channel.c_str()) + rest;
+    return Format("%-24s %-22s %9s", channel.c_str(), type.c_str(), messages.c_str()) + rest;
+  };
   std::vector<std::string> lines;
-  lines.push_back(Format("%-24s %-22s %9s %8s %9s %9s %10s %6s %8s", "channel", "type", "messages",
-                         "Hz", "jitter", moment.is_log ? "" : "age", "bytes/s", "lost", "refused"));
+  lines.push_back(line("channel", "type", "messages",
+                       Format(" %8s %8s %8s %10s %6s %8s", "Hz", "jitter",
+                              moment.is_log ? "" : "age", "bytes/s", "lost", "refused")));
   for (const auto& [channel, row] : moment.table->rows()) {
     if (channel.find(filter) == std::string::npos) continue;
     const double bytes = BytesPerSecond(moment, row);
-    lines.push_back(
-        Format("%-24s %-22s %9lld %8s %9s %9s %10s %6lld %8lld", Printable(channel, 40).c_str(),
-               TypeText(row).c_str(), static_cast<long long>(row.messages),
-               NumberText(RateOf(moment, row), "%.1f").c_str(), DurationText(row.Jitter()).c_str(),
+    lines.push_back(line(
+        Printable(channel, 40), TypeText(row), std::to_string(row.messages),
+        Format(" %8s %8s %8s %10s %6lld %8lld", NumberText(RateOf(moment, row), "%.1f").c_str(),
+               DurationText(row.Jitter()).c_str(),
                moment.is_log ? "" : DurationText(AgeOf(moment, row)).c_str(),
                std::isfinite(bytes) ? BytesText(bytes).c_str() : "-",
-               static_cast<long long>(row.gaps), static_cast<long long>(RefusedOf(row))));
+               static_cast<long long>(row.gaps), static_cast<long long>(RefusedOf(row)))));
   }
   return lines;
 }

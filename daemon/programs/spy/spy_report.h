@@ -19,8 +19,10 @@ struct Moment {
   bool is_log = false;       ///< Rates over everything, no ages.
 };
 
-/// Head line and one line per channel whose name holds `filter`.
-std::vector<std::string> TableLines(const Moment& moment, const std::string& filter = "");
+/// Head line and one line per channel whose name holds `filter`; `is_narrow`: without type and
+/// count of messages, for terminals of 80 columns.
+std::vector<std::string> TableLines(const Moment& moment, const std::string& filter = "",
+                                    bool is_narrow = false);
 /// Refusals in words; empty where there are none.
 std::vector<std::string> RefusalLines(const Moment& moment);
 /// Everything, for programs.
