@@ -18,6 +18,7 @@ std::string Seconds(double s) { return Number(s, 1) + " s"; }
 // What one list made of a vehicle during a stretch: seconds until it was first not held (negative:
 // held all along), the share held, the largest error.
 struct Kept {
+  bool was_held = false;  // Just before, or when it began.
   double lost_after_s = -1.0;
   double share = 0.0;
   double max_error_m = 0.0;
@@ -34,6 +35,7 @@ Kept KeptDuring(const Evaluation& evaluation, ListKind kind, std::size_t object,
   const auto last = std::min(static_cast<std::size_t>(std::max(0.0, when.to_s / period + 0.5)),
                              evaluation.grid.size());
   Kept kept;
+  kept.was_held = errors.contains(first) || (first > 0 && errors.contains(first - 1));
   std::size_t held = 0;
   for (std::size_t k = first; k < last; ++k) {
     const auto found = errors.find(k);
@@ -50,7 +52,7 @@ Kept KeptDuring(const Evaluation& evaluation, ListKind kind, std::size_t object,
 
 std::string LocalWords(const Kept& kept) {
   if (kept.lost_after_s < 0.0) return "LOCAL kept it all the time";
-  if (kept.share == 0.0) return "LOCAL did not hold it";
+  if (!kept.was_held) return "LOCAL did not hold it then";
   if (kept.lost_after_s == 0.0) return "LOCAL lost it at once";
   return "LOCAL lost it after " + Seconds(kept.lost_after_s);
 }
@@ -81,6 +83,17 @@ std::string CriticalWords(const Evaluation& evaluation) {
   return "Vehicle " + std::to_string(evaluation.log.truth.objects[*critical].id) + " was " +
          SightingName(how) + " for " + Seconds(length_s) + ", from " + Seconds(longest.from_s) +
          " on; " + LocalWords(local) + "; " + PriorityWords(priority, length_s) + '.';
+}
+
+// Over all V2V vehicles.
+std::string KeptWords(const Evaluation& evaluation) {
+  const double kept_s = evaluation.hidden.seconds + evaluation.out_of_view.seconds;
+  const double possible_s =
+      evaluation.hidden.possible_seconds + evaluation.out_of_view.possible_seconds;
+  if (kept_s <= 0.0 && possible_s <= 0.0) return "";
+  std::string text = " In all PRIORITY kept unseen vehicles for " + Seconds(kept_s);
+  if (possible_s > kept_s) text += " of the " + Seconds(possible_s) + " in which it could";
+  return text + '.';
 }
 
 std::string ListWords(const Evaluation& evaluation) {
@@ -149,7 +162,7 @@ std::string BridgedWords(const RunLog& log) {
     }
     std::erase_if(unseen, [&](const auto& entry) { return !now.contains(entry.first); });
   }
-  if (stretches == 0) return " Nothing in PRIORITY was hidden or out of view.";
+  if (stretches == 0) return "";
   return " PRIORITY kept vehicles on their BSMs " + std::to_string(stretches) +
          (stretches == 1 ? " time" : " times") + " while no own sensor saw them, for " +
          Seconds(longest_s) + " at the longest (track " + std::to_string(longest_id % 1'000'000) +
@@ -165,7 +178,7 @@ std::string SenderText(std::uint32_t sender) {
 }
 
 std::string Story(const Evaluation& evaluation, const LiarFacts* liars) {
-  std::string text = CriticalWords(evaluation) + ListWords(evaluation);
+  std::string text = CriticalWords(evaluation) + KeptWords(evaluation) + ListWords(evaluation);
   if (liars != nullptr && liars->has_liar()) text += LiarWords(*liars);
   if (liars != nullptr && liars->judged && !liars->has_liar()) text += " Nobody lied.";
   return text;
@@ -183,8 +196,9 @@ std::string StoryWithoutTruth(const RunLog& log) {
       for (const ListedTrack& track : list.tracks) ids.insert(track.id);
     }
     text += std::string(is_first ? "" : "; ") + ListTitle(kind) + " held " +
-            std::to_string(ids.size()) + (ids.size() == 1 ? " track" : " tracks");
-    if (!lists.empty()) {
+            (ids.empty() ? "no" : std::to_string(ids.size())) +
+            (ids.size() == 1 ? " track" : " tracks");
+    if (!ids.empty()) {
       text += ", " + Number(static_cast<double>(tracks) / static_cast<double>(lists.size()), 1) +
               " at a time";
     }
@@ -193,6 +207,7 @@ std::string StoryWithoutTruth(const RunLog& log) {
   text += " in " + Seconds(log.log_seconds) + "." + BridgedWords(log);
   std::set<std::uint32_t> senders;
   for (const BsmArrival& bsm : log.bsms) senders.insert(bsm.sender);
+  if (senders.empty()) return text + " No V2V sender spoke.";
   text += ' ' + std::to_string(senders.size()) + (senders.size() == 1 ? " sender" : " senders") +
           " spoke, " + std::to_string(log.bsms.size()) + " BSMs;";
   std::set<std::uint32_t> accused;
