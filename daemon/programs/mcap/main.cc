@@ -2,6 +2,7 @@
 // v2vouch-mcap: LCM logs to MCAP files and back.
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -50,12 +51,13 @@ void Print(const ConvertResult& result, const std::string& out, bool wants_json)
     return;
   }
   std::cout << out << ": " << result.messages << " messages of " << result.events << " events, "
-            << static_cast<double>(result.bytes / 100'000) / 10.0 << " MB\n";
+            << std::round(static_cast<double>(result.bytes) / 1e5) / 10.0 << " MB\n";
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
+// What throws here is a lack of memory.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   v2vouch::GuardStandardStreams("v2vouch-mcap");
   std::string in;
   std::string out;

@@ -105,7 +105,9 @@ bool Screen::TakeKeys(const Moment& moment) {
 }
 
 void Screen::Draw(const Moment& moment, const std::string& title) {
-  const auto [rows, columns] = SizeOfTerminal();
+  const auto size = SizeOfTerminal();
+  const std::size_t rows = size.first;
+  const std::size_t columns = size.second;
   std::string frame = "\x1b[H";
   std::size_t used = 0;
   const auto put = [&](const std::string& line, bool is_marked = false) {

