@@ -28,13 +28,14 @@ LIBRARIES = {
     "json": r"nlohmann/.*",
     "geographic": r"GeographicLib/.*",
     "zlib": r"zlib\.h",
+    "zstd": r"zstd\.h",
     "openssl": r"openssl/.*",
     "pcap": r"pcap/.*|pcap\.h",
     "ceres": r"(ceres|glog)/.*",
     "opencv": r"opencv2/.*",
     "files": r"fstream|filesystem|iostream",
     "threads": r"thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|pthread\.h",
-    "system": r"(sys|netinet|arpa|net|linux)/.*|unistd\.h|fcntl\.h|poll\.h|dirent\.h|spawn\.h"
+    "system": r"(sys|netinet|arpa|net|linux)/.*|unistd\.h|termios\.h|fcntl\.h|poll\.h|dirent\.h|spawn\.h"
               r"|signal\.h|csignal|netdb\.h|ifaddrs\.h|dlfcn\.h",
 }
 STANDARD = re.compile(r"[a-z_0-9]+")  # <vector>, <cmath>; no dot, no slash.

@@ -15,6 +15,7 @@ find_package(benchmark REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
 pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 find_program(LCM_GEN lcm-gen REQUIRED)
 
 # GeographicLib's own find module sits in a folder CMake does not search by itself.

@@ -9,7 +9,7 @@ constexpr const char* kStyle = R"(
 * { box-sizing: border-box; }
 body { margin: 0; background: #eef0f3; color: #2d333b;
   font: 15px/1.5 "Segoe UI", "Helvetica Neue", Arial, "Liberation Sans", sans-serif; }
-main { width: 1140px; margin: 0 auto; padding: 28px 0 60px; }
+main { max-width: 1140px; margin: 0 auto; padding: 28px 12px 60px; }
 h1 { font-size: 26px; margin: 0 0 2px; letter-spacing: -0.3px; }
 h2 { font-size: 18px; margin: 0 0 4px; }
 p { margin: 4px 0 10px; max-width: 100ch; }
@@ -29,6 +29,7 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; width: 10
 th, td { padding: 5px 7px; text-align: right; border-bottom: 1px solid #eceef1; }
 th { font-weight: 600; font-size: 13px; color: #6b7480; border-bottom: 1px solid #c9ced6; }
 th:first-child, td:first-child { text-align: left; }
+table.text { width: auto; } table.text th, table.text td { text-align: left; padding-right: 22px; }
 tr.list td { font-weight: 600; background: #f5f6f8; }
 tr.ours td { font-weight: 600; }
 tr.bound td { color: #6b7480; font-style: italic; }
@@ -42,6 +43,9 @@ svg text { font-family: "Segoe UI", "Helvetica Neue", Arial, "Liberation Sans", 
 .caption { font-size: 14px; font-weight: 600; fill: #2d333b; }
 .ring { font-size: 10px; fill: #98a1ac; }
 .id { font-size: 11px; fill: #2d333b; paint-order: stroke; stroke: #f7f8fa; stroke-width: 3px; }
+.story { font-size: 17px; line-height: 1.6; max-width: 90ch; }
+.liar { color: #c0392b; font-weight: 600; }
+pre { overflow-x: auto; font-size: 13px; }
 .critical { font-weight: 700; font-size: 12.5px; fill: #c0392b; }
 )";
 

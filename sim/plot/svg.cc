@@ -136,7 +136,7 @@ class Axes {
     }
     if (!(top > 0.0)) top = 1.0;
     y_step = NiceStep(top * 1.05, 5);
-    top = std::ceil(top * 1.02 / y_step) * y_step;
+    top *= 1.03;  // A little air above the highest value.
   }
 
   [[nodiscard]] double X(double x) const { return kLeft + (x - x_from) / x_span * inner_width; }

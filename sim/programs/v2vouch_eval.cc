@@ -11,6 +11,7 @@
 #include "daemon/rim/program/command_line.h"
 #include "sim/annotation/annotate_log.h"
 #include "sim/behaviour/evaluation.h"
+#include "sim/report/log_report.h"
 #include "sim/report/report.h"
 #include "sim/report/scorecard_text.h"
 #include "sim/spoofing/spoof_json.h"
@@ -33,8 +34,10 @@ constexpr const char* kExamples =
     "  v2vouch-eval OUT.lcm --scorecard --json     errors by kind, lead vehicle, first listing; "
     "quick\n"
     "  v2vouch-eval drive.lcm --summary            a real drive: counts, no truth needed\n"
+    "  v2vouch-eval drive.lcm --report report/     a real drive: what was held when, trust, rates\n"
     "\n"
-    "Exit codes: 0 good; 1 the log cannot be read or judged (no TRUTH, no lists, no overlap, a "
+    "Exit codes: 0 good; 1 the log cannot be read or judged (no TRUTH and no --report, no lists, "
+    "no overlap, a "
     "step of\n"
     "time), or with --gates a gate is missed; 2 usage.";
 
@@ -102,6 +105,24 @@ int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
   return kGood;
 }
 
+// What became of each BSM, where the log says so; null where it cannot be judged.
+std::unique_ptr<v2vouch::evaluation::LiarFacts> LiarsOf(const std::string& path) {
+  using namespace v2vouch::evaluation;
+  auto facts = std::make_unique<LiarFacts>();
+  if (!Load(path, facts->log, ReadScope::kSpoof)) return nullptr;
+  if (facts->log.bsm_truths.empty() || facts->log.bsm_verdicts.empty()) return nullptr;
+  facts->judged = JudgeSpoof(facts->log, false);
+  return facts;
+}
+
+int PutReport(const std::string& folder, const std::string& html, const std::string& story) {
+  std::string error;
+  const std::string file = v2vouch::evaluation::WritePage(folder, html, error);
+  if (file.empty()) return Complain(error);
+  std::fprintf(stderr, "%s\nreport: %s\n", story.c_str(), file.c_str());
+  return kGood;
+}
+
 int PrintSummary(const std::string& path, const v2vouch::evaluation::RunLog& log, bool as_json) {
   using namespace v2vouch::evaluation;
   std::fputs((as_json ? ListSummaryJson(log) : ListSummary(log)).c_str(), stdout);
@@ -110,6 +131,17 @@ int PrintSummary(const std::string& path, const v2vouch::evaluation::RunLog& log
   if (has_lists) return kGood;
   if (!log.other_types.empty()) return Complain(path + ": " + OtherTypesText(log.other_types));
   return Complain(path + ": holds no track lists; `v2vouch-replay LOG --out OUT` makes them");
+}
+
+int ReportWithoutTruth(const std::string& path, const v2vouch::evaluation::RunLog& log,
+                       const std::string& folder, bool as_json) {
+  using namespace v2vouch::evaluation;
+  LogFacts facts;
+  std::string error;
+  if (!ReadLogFacts(path, facts, error)) return Complain(error);
+  const int code =
+      PutReport(folder, LogReportHtml(log, facts, PicturesOf(path)), StoryWithoutTruth(log));
+  return code != kGood ? code : PrintSummary(path, log, as_json);
 }
 
 int PrintScorecards(const v2vouch::evaluation::RunLog& log,
@@ -183,6 +215,9 @@ int main(int argc, char** argv) {
     JoinLocal(other, static_cast<int>(k + 1), log);
   }
   if (options.summary) return PrintSummary(log_path, log, options.as_json);
+  if (log.truth.empty() && !options.report_folder.empty()) {
+    return ReportWithoutTruth(log_path, log, options.report_folder, options.as_json);
+  }
   if (const std::string why = WhyNotJudged(log); !why.empty()) {
     return Complain(log_path + ": " + why);
   }
@@ -198,14 +233,14 @@ int main(int argc, char** argv) {
     paper = Evaluate(std::move(paper_log), options.settings);
   }
   if (!options.report_folder.empty()) {
+    LogFacts facts;
     std::string error;
-    const std::string file =
-        WriteReport(options.report_folder, *evaluation, paper.get(), PicturesOf(log_path), error);
-    if (file.empty()) {
-      std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());
-      return kFailed;
-    }
-    std::fprintf(stderr, "report: %s\n", file.c_str());
+    if (!ReadLogFacts(log_path, facts, error)) return Complain(error);
+    const auto liars = LiarsOf(log_path);
+    const std::string html =
+        ReportHtml(*evaluation, paper.get(), PicturesOf(log_path), liars.get(), &facts);
+    const int code = PutReport(options.report_folder, html, Story(*evaluation, liars.get()));
+    if (code != kGood) return code;
   }
   const std::string figures =
       options.as_json ? ToJson(*evaluation, paper.get()) : ToTable(*evaluation, paper.get());

@@ -3,7 +3,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "sim/metrics/placing.h"
 #include "sim/plot/svg.h"
@@ -89,6 +91,7 @@ void DrawGround(Svg& svg, const Evaluation& evaluation, const Window& window) {
     svg.Circle(ego.x(), ego.y(), ring_m * window.scale(),
                "fill=\"none\" stroke=\"#cfd5dc\" stroke-dasharray=\"1 3\"");
     const Eigen::Vector2d label = window.FromBody(ring_m, 0.0);
+    if (label.y() < kTitle + 4.0) continue;  // Its letters would be cut.
     svg.Text(label.x() + 3.0, label.y() + 10.0, Number(ring_m) + " m", "class=\"ring\"");
   }
 }
@@ -118,34 +121,102 @@ void DrawTruth(Svg& svg, const Evaluation& evaluation, const Window& window, Tim
   }
 }
 
-/// Names of the vehicles, drawn last so that nothing covers them; the critical one's at the very
-/// end.
+/// A rectangle of the picture.
+struct Area {
+  double left, top, right, bottom;
+  [[nodiscard]] double Overlap(const Area& other) const {
+    return std::max(0.0, std::min(right, other.right) - std::max(left, other.left)) *
+           std::max(0.0, std::min(bottom, other.bottom) - std::max(top, other.top));
+  }
+};
+
+/// Puts names beside their vehicles, where they cover the least of other names and vehicles.
+class Labels {
+ public:
+  explicit Labels(double height) : picture_{0.0, kTitle, kWidth, kTitle + height} {}
+  /// A vehicle; its tracks are drawn somewhat larger.
+  void Avoid(const Area& area) {
+    constexpr double kMargin = 4.0;
+    taken_.push_back(
+        {area.left - kMargin, area.top - kMargin, area.right + kMargin, area.bottom + kMargin});
+  }
+
+  void Draw(Svg& svg, const Area& vehicle, const std::string& name, const char* style,
+            double letter_px) {
+    const double width = letter_px * static_cast<double>(name.size());
+    const double height = 1.7 * letter_px;
+    const double x = 0.5 * (vehicle.left + vehicle.right);
+    const double y = 0.5 * (vehicle.top + vehicle.bottom);
+    constexpr double kGap = 6.0;
+    const auto at = [&](double left, double top) {
+      return Area{left, top, left + width, top + height};
+    };
+    const std::array candidates = {at(vehicle.right + kGap, y - height / 2),
+                                   at(vehicle.left - kGap - width, y - height / 2),
+                                   at(x - width / 2, vehicle.top - height - 4.0),
+                                   at(x - width / 2, vehicle.bottom + 4.0),
+                                   at(vehicle.right + kGap, vehicle.top - height),
+                                   at(vehicle.left - kGap - width, vehicle.top - height),
+                                   at(vehicle.right + kGap, vehicle.bottom),
+                                   at(vehicle.left - kGap - width, vehicle.bottom)};
+    const Area* best = &candidates[0];
+    double least = 1e9;
+    for (const Area& candidate : candidates) {
+      const double outside = width * height - candidate.Overlap(picture_);
+      double covered = outside;
+      for (const Area& taken : taken_) covered += candidate.Overlap(taken);
+      if (covered < least - 0.5) {
+        least = covered;
+        best = &candidate;
+      }
+    }
+    svg.Text(best->left, best->bottom - 0.25 * height, name, std::string("class=\"") + style + '"');
+    taken_.push_back(*best);
+  }
+
+ private:
+  Area picture_;
+  std::vector<Area> taken_;
+};
+
+Area AreaOf(const std::vector<Eigen::Vector2d>& points) {
+  Area area{points[0].x(), points[0].y(), points[0].x(), points[0].y()};
+  for (const Eigen::Vector2d& p : points) {
+    area = {std::min(area.left, p.x()), std::min(area.top, p.y()), std::max(area.right, p.x()),
+            std::max(area.bottom, p.y())};
+  }
+  return area;
+}
+
+/// Names of the vehicles, drawn last so that nothing covers them; the critical one's first, as it
+/// has the best place.
 void DrawNames(Svg& svg, const Evaluation& evaluation, const Window& window, Timestamp t,
-               std::optional<std::size_t> critical) {
-  const auto draw = [&](std::size_t o, const char* style) {
+               std::optional<std::size_t> critical, Labels& labels) {
+  std::vector<std::pair<std::size_t, Area>> named;
+  for (std::size_t o = 0; o < evaluation.log.truth.objects.size(); ++o) {
     const TruthObject& object = evaluation.log.truth.objects[o];
     const auto motion = object.motion.At(t);
-    if (!motion || !object.is_vehicle()) return;
-    Eigen::Vector2d reach = Eigen::Vector2d::Zero();
-    const Eigen::Vector2d middle = window(motion->position());
-    for (const auto& corner :
-         window(Corners(motion->position(), motion->yaw_rad, object.length_m, object.width_m))) {
-      reach = reach.cwiseMax((corner - middle).cwiseAbs());
+    if (!motion || !object.is_vehicle()) continue;
+    const Area area = AreaOf(
+        window(Corners(motion->position(), motion->yaw_rad, object.length_m, object.width_m)));
+    if (area.right < 0.0 || area.left > kWidth || area.bottom < kTitle ||
+        area.top > kTitle + window.height()) {
+      continue;
     }
-    // Beside an upright box, above a lying one: away from the next car of the queue.
-    const std::string name = std::to_string(object.id) + (object.has_v2v ? " V2V" : "");
-    const std::string attributes = std::string("class=\"") + style + "\"";
-    if (reach.x() > reach.y()) {
-      svg.Text(middle.x(), middle.y() - reach.y() - 4.0, name,
-               attributes + " text-anchor=\"middle\"");
-    } else {
-      svg.Text(middle.x() + reach.x() + 4.0, middle.y() + 3.5, name, attributes);
-    }
-  };
-  for (std::size_t o = 0; o < evaluation.log.truth.objects.size(); ++o) {
-    if (!critical || *critical != o) draw(o, "id");
+    labels.Avoid(area);
+    named.emplace_back(o, area);
   }
-  if (critical) draw(*critical, "id critical");
+  const auto draw = [&](const std::pair<std::size_t, Area>& entry, bool is_critical) {
+    const TruthObject& object = evaluation.log.truth.objects[entry.first];
+    labels.Draw(svg, entry.second, std::to_string(object.id) + (object.has_v2v ? " V2V" : ""),
+                is_critical ? "id critical" : "id", is_critical ? 7.6 : 6.4);
+  };
+  for (const auto& entry : named) {
+    if (critical && entry.first == *critical) draw(entry, true);
+  }
+  for (const auto& entry : named) {
+    if (!critical || entry.first != *critical) draw(entry, false);
+  }
 }
 
 void DrawList(Svg& svg, const Evaluation& evaluation, const Window& window, Timestamp t,
@@ -180,6 +251,30 @@ void DrawList(Svg& svg, const Evaluation& evaluation, const Window& window, Time
   }
 }
 
+// What liars claimed within the last second, the newest of each device.
+void DrawLies(Svg& svg, const RunLog& liars, const Window& window, Timestamp t, Labels& labels) {
+  std::map<std::int64_t, const BsmTruth*> newest;
+  for (const BsmTruth& bsm : liars.bsm_truths) {
+    const double age_s = ToSeconds(t - bsm.stamp);
+    if (bsm.is_attack && age_s >= -0.05 && age_s < 1.0) newest[bsm.device] = &bsm;
+  }
+  for (const auto& [device, bsm] : newest) {
+    const Eigen::Vector2d p = window(bsm->claimed.p_W);
+    const std::string style = Stroke(colour::kAlarm, "3");
+    const auto box = window(Corners(bsm->claimed.p_W, bsm->claimed.yaw_rad, bsm->claimed.length_m,
+                                    bsm->claimed.width_m));
+    svg.Polygon(box, Stroke(colour::kAlarm, "1.6", "stroke-dasharray=\"2 2\""));
+    svg.Line(p.x() - 6.0, p.y() - 6.0, p.x() + 6.0, p.y() + 6.0, style);
+    svg.Line(p.x() - 6.0, p.y() + 6.0, p.x() + 6.0, p.y() - 6.0, style);
+    const Area area = AreaOf(box);
+    labels.Avoid(area);
+    if (area.right > 0.0 && area.left < kWidth && area.bottom > kTitle &&
+        area.top < kTitle + window.height()) {
+      labels.Draw(svg, area, "false claim", "id critical", 7.4);
+    }
+  }
+}
+
 }  // namespace
 
 View ChooseView(const Evaluation& evaluation, const std::vector<Moment>& moments,
@@ -202,7 +297,8 @@ View ChooseView(const Evaluation& evaluation, const std::vector<Moment>& moments
 }
 
 std::string BirdsEye(const Evaluation& evaluation, const Moment& moment, const View& view,
-                     std::optional<std::size_t> critical, const std::string& id) {
+                     std::optional<std::size_t> critical, const std::string& id,
+                     const RunLog* liars) {
   const Timestamp t = evaluation.grid[moment.instant];
   const auto ego = evaluation.log.truth.ego.At(t);
   if (!ego) return "";
@@ -220,7 +316,9 @@ std::string BirdsEye(const Evaluation& evaluation, const Moment& moment, const V
   for (const ListKind kind : {ListKind::kV2v, ListKind::kLocal, ListKind::kPriority}) {
     DrawList(svg, evaluation, window, t, kind);
   }
-  DrawNames(svg, evaluation, window, t, critical);
+  Labels labels(window.height());
+  if (liars != nullptr) DrawLies(svg, *liars, window, t, labels);
+  DrawNames(svg, evaluation, window, t, critical, labels);
   svg.Close();
   svg.Rect(0.5, kTitle + 0.5, kWidth - 1.0, window.height() - 1.0, Stroke("#c3c9d1", "1"));
   return svg.Finish();
@@ -234,13 +332,13 @@ std::string BirdsEyeLegend() {
     x += width;
   };
   svg.Rect(x, 6.0, 20.0, 10.0, std::string("fill=\"") + colour::kInk + "\"");
-  text("ego", 66.0);
+  text("ego", 70.0);
   svg.Rect(x, 6.0, 20.0, 10.0, kTruthStyle);
   text("true vehicle", 124.0);
   svg.Rect(x, 6.0, 20.0, 10.0, kHiddenStyle);
-  text("hidden", 78.0);
+  text("hidden", 90.0);
   svg.Rect(x, 6.0, 20.0, 10.0, kOutOfViewStyle);
-  text("out of view", 104.0);
+  text("out of view", 116.0);
   svg.Rect(x, 6.0, 20.0, 10.0, Stroke(colour::kLocal, "1.6"));
   text("LOCAL track", 126.0);
   svg.Rect(x, 6.0, 20.0, 10.0, Stroke(colour::kPriority, "2"));

@@ -21,9 +21,10 @@ View ChooseView(const Evaluation& evaluation, const std::vector<Moment>& moments
                 std::optional<std::size_t> critical);
 
 /// The scene from above at one moment, ego's heading up: buildings, true boxes, the three lists
-/// with 2-sigma ellipses.
+/// with 2-sigma ellipses; false claims of `liars` (may be null) within the second before.
 std::string BirdsEye(const Evaluation& evaluation, const Moment& moment, const View& view,
-                     std::optional<std::size_t> critical, const std::string& id);
+                     std::optional<std::size_t> critical, const std::string& id,
+                     const RunLog* liars = nullptr);
 
 /// The key to the pictures.
 std::string BirdsEyeLegend();

@@ -7,13 +7,16 @@
 #include <limits>
 
 #include "daemon/rim/io/durable_file.h"
-#include "sim/plot/report_style.h"
 #include "sim/plot/svg.h"
 #include "sim/report/behaviour_text.h"
 #include "sim/report/birds_eye.h"
+#include "sim/report/liar_section.h"
+#include "sim/report/log_report.h"
 #include "sim/report/moments.h"
+#include "sim/report/page.h"
 #include "sim/report/report_tables.h"
 #include "sim/report/timeline.h"
+#include "sim/report/trust_strip.h"
 
 namespace v2vouch::evaluation {
 namespace {
@@ -91,28 +94,6 @@ std::string CriticalError(const Evaluation& evaluation, std::size_t critical) {
   return Draw(plot);
 }
 
-// RFC 4648, section 4.
-std::string Base64(const std::vector<std::uint8_t>& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      group = group << 8U | (i + k < bytes.size() ? bytes[i + k] : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool is_padding = i + k > bytes.size();
-      out.push_back(is_padding ? '=' : kDigits[group >> (18U - 6U * k) & 63U]);
-    }
-  }
-  return out;
-}
-
-std::string Card(const std::string& title, const std::string& text, const std::string& body) {
-  return "<section class=\"card\">\n<h2>" + title + "</h2>\n" +
-         (text.empty() ? "" : "<p class=\"note\">" + text + "</p>\n") + body + "</section>\n";
-}
-
 std::string TimeCards(const Evaluation& evaluation, std::optional<std::size_t> critical) {
   const auto gospa = [](const InstantScore& now) { return now.gospa; };
   const auto false_error = [](const InstantScore& now) { return std::sqrt(now.false_pow); };
@@ -137,66 +118,88 @@ std::string TimeCards(const Evaluation& evaluation, std::optional<std::size_t> c
   return out;
 }
 
-std::string Pictures(const Evaluation& evaluation, std::optional<std::size_t> critical) {
-  const std::vector<Moment> moments = ChooseMoments(evaluation, critical);
+// Where a liar's claim is nearest to the ego; nothing where a picture of `shown` has one already.
+std::optional<Moment> LiarMoment(const Evaluation& evaluation, const LiarFacts* liars,
+                                 const std::vector<Moment>& shown) {
+  if (liars == nullptr || !liars->has_liar()) return std::nullopt;
+  std::optional<Moment> best;
+  double nearest_m = 60.0;
+  const Truth& truth = evaluation.log.truth;
+  for (const BsmTruth& bsm : liars->log.bsm_truths) {
+    if (!bsm.is_attack) continue;
+    const auto ego = truth.ego.At(bsm.stamp);
+    const double t_s = ToSeconds(bsm.stamp - evaluation.grid.front());
+    const double k = std::round(t_s / evaluation.settings.period_s);
+    if (!ego || k < 0.0 || k >= static_cast<double>(evaluation.grid.size())) continue;
+    const double distance_m = (bsm.claimed.p_W - ego->position()).norm();
+    if (distance_m < 40.0 && std::ranges::any_of(shown, [&](const Moment& moment) {
+          return std::abs(moment.t_s - t_s) < 0.5;
+        })) {
+      return std::nullopt;
+    }
+    if (distance_m < nearest_m) {
+      nearest_m = distance_m;
+      best = Moment{static_cast<std::size_t>(k), t_s, "false claim of " + SenderText(bsm.sender)};
+    }
+  }
+  return best;
+}
+
+std::string Pictures(const Evaluation& evaluation, std::optional<std::size_t> critical,
+                     const LiarFacts* liars) {
+  std::vector<Moment> moments = ChooseMoments(evaluation, critical);
+  if (const auto moment = LiarMoment(evaluation, liars, moments)) moments.push_back(*moment);
   const View view = ChooseView(evaluation, moments, critical);
   std::string out = BirdsEyeLegend() + "<div class=\"pictures\">\n";
   for (std::size_t k = 0; k < moments.size(); ++k) {
-    out += BirdsEye(evaluation, moments[k], view, critical, std::to_string(k));
+    out += BirdsEye(evaluation, moments[k], view, critical, std::to_string(k),
+                    liars == nullptr ? nullptr : &liars->log);
   }
   return out + "</div>\n";
-}
-
-std::string CameraPictures(const std::vector<ReportPicture>& pictures) {
-  std::string out;
-  for (const ReportPicture& picture : pictures) {
-    out += "<figure><img style=\"max-width:100%\" alt=\"" + Escape(picture.caption) +
-           "\" src=\"data:image/jpeg;base64," + Base64(picture.jpeg) + "\"><figcaption>" +
-           Escape(picture.caption) + "</figcaption></figure>\n";
-  }
-  return out;
 }
 
 }  // namespace
 
 std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
-                       const std::vector<ReportPicture>& pictures) {
+                       const std::vector<ReportPicture>& pictures, const LiarFacts* liars,
+                       const LogFacts* facts) {
   const auto critical = CriticalVehicle(evaluation);
   const std::string name =
       evaluation.log.specs.name.empty() ? "recorded run" : evaluation.log.specs.name;
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>V2Vouch: " +
-      Escape(name) + "</title>\n<style>" + ReportStyle() + "</style>\n</head>\n<body><main>\n";
-  out += "<h1>V2Vouch: " + Escape(name) + "</h1>\n<p class=\"sub\">" +
-         Number(evaluation.duration_s, 1) + " s, " +
-         std::to_string(evaluation.headline(ListKind::kLocal).series.size()) +
-         " instants at 20 Hz, " +
-         (evaluation.log.specs.has_ideal_points ? "ideal point targets" : "extended vehicles") +
-         ", disc of " + Number(evaluation.settings.radius_m) + " m round the ego</p>\n";
-  out += Card("Gates", "", GatesHtml(evaluation));
+  std::string out = PageHead(
+      name,
+      Number(evaluation.duration_s, 1) + " s, " +
+          std::to_string(evaluation.headline(ListKind::kLocal).series.size()) +
+          " instants at 20 Hz, " +
+          (evaluation.log.specs.has_ideal_points ? "ideal point targets" : "extended vehicles") +
+          ", disc of " + Number(evaluation.settings.radius_m) + " m round the ego");
+  out += Card("What happened", "", StoryHtml(Story(evaluation, liars)));
   out += Card(
       "The scene",
       "From above, ego heading up. Moments are chosen around the V2V vehicle that no sensor sees "
       "for longest after having been seen.",
-      Pictures(evaluation, critical));
-  if (!pictures.empty()) {
-    out += Card("Through the camera",
-                "White: what the network or the smart camera saw. Green: LOCAL, magenta: PRIORITY, "
-                "as boxes standing on a flat road.",
-                CameraPictures(pictures));
+      Pictures(evaluation, critical, liars));
+  if (liars != nullptr && liars->has_liar()) {
+    out += Card("The liar", "A red cross in the pictures above is a false claim.",
+                LiarSection(evaluation, *liars));
   }
-  out += Card("Beside the paper",
-              "Means over the run; missed, false and switching errors are roots, as in the paper. "
-              "The paper's row is its own simulation, whose unit and truth set are not stated; the "
-              "other rows are this run.",
-              ComparisonHtml(evaluation, paper));
-  out += TimeCards(evaluation, critical);
+  if (!pictures.empty()) out += Card("Through the camera", kCameraNote, PicturesHtml(pictures));
+  out += Card("Who is held when", "", Timeline(evaluation, 24));
+  out += Card("Trust over time", "Each sender's state in the V2V list; a black mark is a verdict.",
+              TrustStrips(evaluation.log, {}, evaluation.log.truth.begin(),
+                          std::max(1.0, evaluation.duration_s), 16));
   if (critical) {
     out += Card("Vehicle " + std::to_string(evaluation.log.truth.objects[*critical].id) +
                     ": position error",
                 "Gaps: the list does not hold it.", CriticalError(evaluation, *critical));
   }
-  out += Card("Who is held when", "", Timeline(evaluation, 24));
+  out += TimeCards(evaluation, critical);
+  if (facts != nullptr) out += Card("Inputs over time", "", RatesHtml(*facts));
+  out += Card("Beside the paper",
+              "Means over the run; missed, false and switching errors are roots, as in the paper. "
+              "The paper's row is its own simulation, whose unit and truth set are not stated; the "
+              "other rows are this run.",
+              ComparisonHtml(evaluation, paper));
   out += Card("Details", "", DetailsHtml(evaluation));
   out +=
       Card("Behaviour",
@@ -205,19 +208,26 @@ std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
            "\"visible\" is also said where it cannot be told. A look is a sensor frame with a "
            "detection probability of at least one half.",
            BehaviourHtml(evaluation.behaviour));
+  if (facts != nullptr) {
+    out += Card("Refused", "As the daemon counted at the end of the log.", RefusalsHtml(*facts));
+  }
+  out += Card("Gates",
+              "Three figures that this project holds its lists to, on its own scenarios; a missed "
+              "gate is work to do, not a fault of this log. <b>Localisation / bound</b>: the error "
+              "of visible vehicles over the least that any tracker could have with these sensors "
+              "(1 = perfect). <b>Missed beyond the unavoidable</b>: time in which a vehicle could "
+              "have been listed and was not. <b>False tracks</b>: listed where nothing is, per "
+              "instant.",
+              GatesHtml(evaluation));
   out += Card("How to read this", "", DefinitionsHtml(evaluation));
-  return out + "</main></body></html>\n";
+  return out + PageFoot();
 }
 
-std::string WriteReport(const std::string& folder, const Evaluation& evaluation,
-                        const Evaluation* paper, const std::vector<ReportPicture>& pictures,
-                        std::string& error) {
+std::string WritePage(const std::string& folder, const std::string& html, std::string& error) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   const auto path = std::filesystem::path(folder) / "index.html";
-  const bool is_written =
-      ReplaceFile(path.string(), ReportHtml(evaluation, paper, pictures), error);
-  return is_written ? path.string() : "";
+  return ReplaceFile(path.string(), html, error) ? path.string() : "";
 }
 
 }  // namespace v2vouch::evaluation

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "sim/behaviour/evaluation.h"
+#include "sim/report/story.h"
+#include "sim/run_log/log_facts.h"
 
 namespace v2vouch::evaluation {
 
@@ -16,15 +18,15 @@ struct ReportPicture {
 };
 
 /// The report as one self-contained HTML page: no script, no outside file, no date; the same run
-/// gives the same bytes. `paper` is the same run with the paper's association, or null;
-/// `pictures` stand inside the page.
+/// gives the same bytes. `paper` is the same run with the paper's association, `liars` what is
+/// known of false BSMs, `facts` the log's own figures; each may be null. `pictures` stand inside
+/// the page.
 std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
-                       const std::vector<ReportPicture>& pictures = {});
+                       const std::vector<ReportPicture>& pictures = {},
+                       const LiarFacts* liars = nullptr, const LogFacts* facts = nullptr);
 
-/// Writes ReportHtml() to `folder`/index.html, making the folder.
+/// Writes a page to `folder`/index.html, making the folder.
 /// @return the file's path, or empty with `error` set.
-std::string WriteReport(const std::string& folder, const Evaluation& evaluation,
-                        const Evaluation* paper, const std::vector<ReportPicture>& pictures,
-                        std::string& error);
+std::string WritePage(const std::string& folder, const std::string& html, std::string& error);
 
 }  // namespace v2vouch::evaluation

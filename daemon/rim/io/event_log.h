@@ -78,6 +78,8 @@ class LogWriter {
 
   /// `channel` has 1..63 bytes, `bytes` at most 64 MiB.
   void Write(Timestamp received, std::string_view channel, std::span<const std::uint8_t> bytes);
+  /// The same with the event's own number, for copies that shall equal the original.
+  void Write(const LogEvent& event);
   /// False once something could not be written; no use in going on then.
   [[nodiscard]] bool is_good() const { return errno_ == 0; }
   /// Flushes and closes. @return false with `error` set when anything could not be written.
@@ -85,6 +87,8 @@ class LogWriter {
 
  private:
   LogWriter() = default;
+  void WriteNumbered(std::int64_t number, Timestamp received, std::string_view channel,
+                     std::span<const std::uint8_t> bytes);
   std::FILE* file_ = nullptr;
   std::string path_;
   std::int64_t number_ = 0;

@@ -30,12 +30,21 @@ LogWriter::~LogWriter() {
 
 void LogWriter::Write(Timestamp received, std::string_view channel,
                       std::span<const std::uint8_t> bytes) {
+  WriteNumbered(number_++, received, channel, bytes);
+}
+
+void LogWriter::Write(const LogEvent& event) {
+  WriteNumbered(event.number, event.received, event.channel, event.bytes);
+}
+
+void LogWriter::WriteNumbered(std::int64_t number, Timestamp received, std::string_view channel,
+                              std::span<const std::uint8_t> bytes) {
   V2VOUCH_CHECK(file_ != nullptr);
   V2VOUCH_CHECK(!channel.empty() && channel.size() <= kMaxChannelLength);
   V2VOUCH_CHECK(bytes.size() <= kMaxEventBytes);
   std::array<std::uint8_t, log_format::kHeaderBytes> header{};
   Store(header.data(), log_format::kSyncWord);
-  Store(header.data() + 4, number_++);
+  Store(header.data() + 4, number);
   Store(header.data() + 12, ToMicros(received));
   Store(header.data() + 20, static_cast<std::uint32_t>(channel.size()));
   Store(header.data() + 24, static_cast<std::uint32_t>(bytes.size()));

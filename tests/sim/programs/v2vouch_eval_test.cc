@@ -88,6 +88,9 @@ TEST_F(Eval, WhatIsMissingIsNamedWithWhatToDo) {
   EXPECT_EQ(truth.code, 1);
   EXPECT_THAT(truth.output, AllOf(HasSubstr("no TRUTH"), HasSubstr("--summary")));
   EXPECT_EQ(Judge(Log({.truths = 0}), "--summary").code, 0);
+  const Finished report = Judge(Log({.truths = 0}), "--report " + folder_.path() + "/no_truth");
+  EXPECT_EQ(report.code, 0) << report.output;
+  EXPECT_THAT(report.output, HasSubstr("There is no truth to judge by"));
   const Finished nothing = Judge(Log({.lists = 0}), "--summary");
   EXPECT_EQ(nothing.code, 1);
   EXPECT_THAT(nothing.output, HasSubstr("no track lists"));

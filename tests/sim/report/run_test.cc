@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/behaviour/evaluation.h"
+#include "sim/report/log_report.h"
 #include "sim/report/report.h"
 #include "tests/sim/report/synthetic_run.h"
 
@@ -147,6 +148,53 @@ TEST_F(EvaluatedRun, ReportIsSelfContainedAndTheSameEveryTime) {
   EXPECT_THAT(html, testing::Not(testing::HasSubstr(">nan<")));
 }
 
+TEST_F(EvaluatedRun, StoryTellsWhatBecameOfTheHiddenVehicle) {
+  // Put in: hidden from 4 to 8 s, LOCAL loses it and PRIORITY does not; one false track of LOCAL.
+  const std::string story = Story(*evaluation_, nullptr);
+  EXPECT_THAT(story,
+              testing::StartsWith("Vehicle 1 was hidden for 4 s, from 4 s on; LOCAL lost it "));
+  EXPECT_THAT(story, testing::HasSubstr("; PRIORITY kept it, at most "));
+  EXPECT_THAT(story, testing::HasSubstr("1 of its tracks were false"));
+  EXPECT_THAT(story, testing::HasSubstr("PRIORITY listed nothing that was not there."));
+  const std::string html = ReportHtml(*evaluation_, nullptr);
+  EXPECT_LT(html.find("What happened"), html.find("The scene"));
+  EXPECT_LT(html.find("Beside the paper"), html.find("<h2>Gates"));
+}
+
+TEST_F(EvaluatedRun, LiarHasASectionAndAPlaceInTheStory) {
+  LiarFacts liars;
+  liars.log.truth = evaluation_->log.truth;
+  liars.log.specs = evaluation_->log.specs;
+  BsmTruth lie;
+  lie.stamp = evaluation_->log.truth.begin() + FromSeconds(5.0);
+  lie.sender = 0xBADCAFE;
+  lie.device = 77;
+  lie.is_attacker = lie.is_attack = true;
+  lie.claimed = {
+      .p_W = evaluation_->log.truth.ego.At(lie.stamp)->position() + Eigen::Vector2d(10.0, 0.0),
+      .length_m = 4.5,
+      .width_m = 1.8};
+  liars.log.bsm_truths = {lie};
+  liars.judged.emplace();
+  liars.judged->false_messages = 1;
+  SourceOutcome outcome;
+  outcome.device = 77;
+  outcome.met_after_s = 0.7;
+  outcome.accused_after_s = 6.4;
+  liars.judged->attackers = {outcome};
+  EXPECT_THAT(Story(*evaluation_, &liars),
+              testing::EndsWith("The phantom never appeared in PRIORITY; doubted after 0.7 s, "
+                                "accused after 6.4 s."));
+  const std::string html = ReportHtml(*evaluation_, nullptr, {}, &liars);
+  EXPECT_THAT(html,
+              testing::AllOf(testing::HasSubstr("<h2>The liar"), testing::HasSubstr("0badcafe"),
+                             testing::HasSubstr(">false claim</text>"),
+                             testing::HasSubstr("Never in PRIORITY")));
+  liars.judged->false_messages = 0;
+  EXPECT_THAT(ReportHtml(*evaluation_, nullptr, {}, &liars),
+              testing::Not(testing::HasSubstr("<h2>The liar")));
+}
+
 TEST(RunWithoutLists, IsAllMissedAndHasNoFigures) {
   const auto evaluation = Evaluate(Recorded({.has_lists = false}, "synthetic_empty.lcm"), {});
   const ListScore& local = evaluation->headline(ListKind::kLocal);
@@ -170,6 +218,21 @@ TEST(RunWithoutTruth, IsCountedButNotJudged) {
   EXPECT_FALSE(json.at("has_truth"));
   EXPECT_EQ(json.at("lists").at("local").at("lists"), 281);
   EXPECT_NEAR(json.at("lists").at("priority").at("longest_track_s").get<double>(), 12.4, 0.1);
+}
+
+TEST(RunWithoutTruth, HasAReportOfWhatWasHeld) {
+  const RunLog log = Recorded({.has_truth = false}, "synthetic_drive.lcm");
+  LogFacts facts;
+  std::string error;
+  ASSERT_TRUE(ReadLogFacts(log.path, facts, error)) << error;
+  const std::string html = LogReportHtml(log, facts);
+  EXPECT_EQ(html, LogReportHtml(log, facts));
+  for (const char* text : {"There is no truth to judge by", "PRIORITY: held when",
+                           "LOCAL: held when", "Trust over time", "Inputs over time",
+                           "none was withdrawn or accused", "holds no V2VOUCH_STATUS"}) {
+    EXPECT_THAT(html, testing::HasSubstr(text));
+  }
+  EXPECT_THAT(html, testing::Not(testing::HasSubstr("nan")));
 }
 
 // A live recording of a scenario: events carry the wall clock, messages the scenario's time.
