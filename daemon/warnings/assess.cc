@@ -47,6 +47,7 @@ class Assessor {
     for (const Target& target : scene_.targets) {
       target_ = &target;
       body_target_ = InBody(target);
+      if (IsInEgo()) continue;
       placement_ = Classify(plan_, body_, body_target_, config_);
       One();
     }
@@ -70,6 +71,15 @@ class Assessor {
     out.covariance = turn * target.state_O.covariance * turn.transpose();
     out.size = {0.5 * target.extent.length_m, 0.5 * target.extent.width_m};
     return out;
+  }
+
+  // A box well inside the ego's own: contact already, or a track of nothing; no warning helps.
+  [[nodiscard]] bool IsInEgo() const {
+    constexpr double kDeep_m = 0.3;
+    const HalfSize own{0.5 * body_.length_m - kDeep_m, 0.5 * body_.width_m - kDeep_m};
+    const StateVector& x = body_target_.mean;
+    return Touch({{body_.centre_x_m, 0.0}, {1.0, 0.0}}, own,
+                 {x.head<2>(), {std::cos(x[kYaw]), std::sin(x[kYaw])}}, body_target_.size);
   }
 
   // Left turns that the driver may be about to take: the one begun, and after the signal the usual
@@ -317,6 +327,7 @@ class Assessor {
       warning.level = by_gap;
       warning.basis = Basis::kGap;
     }
+    if (target_->is_sudden) at_most = Level::kAdvise;
     warning.level = std::min(warning.level, at_most);
     sure = std::max(warning.level, std::min(sure, at_most));
     if (sure < Level::kAdvise) return;

@@ -25,6 +25,9 @@ struct Target {
   Visibility visibility = Visibility::kVisible;
   Timestamp last_own{};           ///< Measured by an own sensor; 1970 = never.
   double bridge_budget_s = kNaN;  ///< Of PRIORITY; NaN = not applicable.
+  /// Faster than a vehicle can become since it was listed at a walk: a track that has slipped to
+  /// something else. Set by the Warner.
+  bool is_sudden = false;
 };
 
 /// A track list as far as a warning needs it.

@@ -96,6 +96,7 @@ WarningList Warner::Make() {
   // Time steps back only where the daemon started anew.
   if (now + stale < last_now_) {
     entries_.clear();
+    pasts_.clear();
     last_fresh_ = newest.is_stale ? Timestamp{} : now;
     if (local_ && local_->stamp > now + stale) local_.reset();
     if (priority_ && priority_->stamp > now + stale) priority_.reset();
@@ -131,6 +132,7 @@ WarningList Warner::Make() {
     scene.ego_yaw_O = newest.ego_yaw_O;
     scene.targets =
         MergeLists(has_local ? &*local_ : nullptr, has_priority ? &*priority_ : nullptr, now);
+    NoteSpeeds(scene.targets, now);
     for (Entry& entry : entries_) {
       entry.is_listed = std::ranges::any_of(scene.targets, [&entry](const Target& target) {
         return IsSameVehicle(entry.shown, target.track_id, target.local_id);
@@ -153,6 +155,32 @@ WarningList Warner::Make() {
     return std::pair(-Rank(a.level), time(a)) < std::pair(-Rank(b.level), time(b));
   });
   return out;
+}
+
+void Warner::NoteSpeeds(std::vector<Target>& targets, Timestamp now) {
+  const Duration window = FromSeconds(config_.sudden_s);
+  std::vector<Past> pasts;
+  pasts.reserve(targets.size());
+  for (Target& target : targets) {
+    const auto known = std::ranges::find_if(pasts_, [&target](const Past& past) {
+      return (past.track_id != 0 && past.track_id == target.track_id) ||
+             (past.local_id != 0 && past.local_id == target.local_id);
+    });
+    Past past = known != pasts_.end() ? std::move(*known) : Past{.first = now};
+    if (known != pasts_.end()) *known = {};
+    past.track_id = target.track_id;
+    past.local_id = target.local_id;
+    std::erase_if(past.speeds, [&](const auto& each) { return now - each.first > window; });
+    const double speed = std::abs(target.state_O.mean[kSpeed]);
+    if (now - past.first >= window) {
+      target.is_sudden = std::ranges::any_of(past.speeds, [&](const auto& each) {
+        return speed > each.second + 1.5 + config_.sudden_accel_mps2 * ToSeconds(now - each.first);
+      });
+    }
+    past.speeds.emplace_back(now, speed);
+    pasts.push_back(std::move(past));
+  }
+  pasts_ = std::move(pasts);
 }
 
 Warner::Entry& Warner::EntryOf(const Warning& warning, Timestamp now) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "daemon/warnings/assess.h"
@@ -40,7 +41,16 @@ class Warner {
     bool is_shown = false;
   };
 
+  // Speeds of one vehicle over the last `sudden_s`.
+  struct Past {
+    std::int64_t track_id = 0;
+    std::int64_t local_id = 0;
+    Timestamp first{};
+    std::vector<std::pair<Timestamp, double>> speeds{};
+  };
+
   WarningList Make();
+  void NoteSpeeds(std::vector<Target>& targets, Timestamp now);
   void Take(const std::vector<Assessment>& found, Timestamp now);
   void Advance(Entry& entry, Level level, Timestamp now);
   void EndOrHold(Entry& entry, Timestamp now);
@@ -58,6 +68,7 @@ class Warner {
   Timestamp last_now_{};
   std::int64_t seq_ = 0;
   std::vector<Entry> entries_;
+  std::vector<Past> pasts_;
 };
 
 }  // namespace v2vouch::warnings

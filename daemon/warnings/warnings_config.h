@@ -33,7 +33,11 @@ struct WarningsConfig {
   double behind_m = 3.0;   ///< ... ends this far behind its rear.
   double closing_s = 3.0;  ///< LCW: time in which a vehicle behind closes up.
   double begin_s = 0.1;  ///< A level begins when its condition holds in two lists or for this long.
-  double clear_s = 0.3;  ///< It ends when the condition was false for this long ...
+  /// A vehicle listed for `sudden_s` that has become faster by more than 1.5 m/s and this
+  /// acceleration allow within that time is only advised of.
+  double sudden_accel_mps2 = 6.0;
+  double sudden_s = 0.6;
+  double clear_s = 0.3;     ///< It ends when the condition was false for this long ...
   double shortest_s = 1.0;  ///< ... and not before it was on for so long.
   double lost_s = 2.0;      ///< LOST stands for so long.
   double stale_s = 0.3;     ///< Lists and ego motion older than this are stale.
@@ -66,6 +70,8 @@ struct WarningsConfig {
     a.Field("behind_m", behind_m, {.at_least = 0.0, .at_most = 30.0});
     a.Field("closing_s", closing_s, {.at_least = 0.0, .at_most = 10.0});
     a.Field("begin_s", begin_s, {.at_least = 0.0, .at_most = 2.0});
+    a.Field("sudden_accel_mps2", sudden_accel_mps2, {.above = 0.0, .at_most = 100.0});
+    a.Field("sudden_s", sudden_s, {.above = 0.0, .at_most = 3.0});
     a.Field("clear_s", clear_s, {.at_least = 0.0, .at_most = 5.0});
     a.Field("shortest_s", shortest_s, {.at_least = 0.0, .at_most = 10.0});
     a.Field("lost_s", lost_s, {.at_least = 0.0, .at_most = 10.0});

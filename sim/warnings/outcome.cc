@@ -25,7 +25,9 @@ class Way {
   [[nodiscard]] double AlongAt(Timestamp t) const {
     const TruthSample& last = samples_.back();
     if (t >= last.stamp) {
-      return along_m_.back() + std::max(0.0, last.motion.speed_mps) * ToSeconds(t - last.stamp);
+      return along_m_.back() +
+             (Predict(last.motion, ToSeconds(t - last.stamp)).position() - last.motion.position())
+                 .norm();
     }
     const auto after = std::ranges::upper_bound(samples_, t, {}, &TruthSample::stamp);
     if (after == samples_.begin()) return 0.0;

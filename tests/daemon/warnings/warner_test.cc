@@ -158,6 +158,23 @@ TEST(Warner, UnwatchedSectorsMakeTheirKindsUnavailable) {
   EXPECT_EQ(drive.Step({}).available_kinds, 0);
 }
 
+TEST(Warner, TrackThatJumpsFromStandingToFastIsOnlyAdvisedOf) {
+  // A parked car's track slips to something else; a car that is new may have any speed.
+  for (const bool stood : {true, false}) {
+    Drive drive;
+    for (int i = 0; i < 20; ++i) {
+      drive.Step(stood ? std::vector{Car(1, 7.0, -3.5, 0.0, 0.0)} : std::vector<Target>{});
+    }
+    Level worst = Level::kInfo;
+    for (int i = 0; i < 6; ++i) {
+      for (const Warning& each : drive.Step({Car(1, 8.0, -2.9, 0.9, 7.0)}).warnings) {
+        worst = std::max(worst, each.level);
+      }
+    }
+    EXPECT_EQ(worst, stood ? Level::kAdvise : Level::kUrgent) << stood;
+  }
+}
+
 TEST(Warner, WithoutPriorityLocalGoesOnAndSaysSo) {
   Warner warner{WarningsConfig{}, EgoBody{}};
   WarningList last;
