@@ -15,6 +15,7 @@
 #include "sim/report/report.h"
 #include "sim/report/scorecard_text.h"
 #include "sim/spoofing/spoof_json.h"
+#include "sim/warnings/judge_warnings.h"
 
 namespace {
 
@@ -33,6 +34,9 @@ constexpr const char* kExamples =
     "                                              and `v2v.message_verdicts: true` in the replay\n"
     "  v2vouch-eval OUT.lcm --scorecard --json     errors by kind, lead vehicle, first listing; "
     "quick\n"
+    "  v2vouch-eval OUT.lcm --warnings             v2vouch-warn's engine on V2V alone, LOCAL, "
+    "both\n"
+    "                                              lists and truth, compared\n"
     "  v2vouch-eval drive.lcm --summary            a real drive: counts, no truth needed\n"
     "  v2vouch-eval drive.lcm --report report/     a real drive: what was held when, trust, rates\n"
     "\n"
@@ -123,6 +127,16 @@ int PutReport(const std::string& folder, const std::string& html, const std::str
   return kGood;
 }
 
+int PrintWarnings(const std::string& path, bool as_json) {
+  using namespace v2vouch::evaluation;
+  WarnRun run;
+  std::string error;
+  if (!RunWarnings(path, {}, run, error)) return Complain(path + ": " + error);
+  const WarnScore score = JudgeWarnings(run);
+  std::fputs((as_json ? WarnScoreJson(score) : WarnScoreTable(score)).c_str(), stdout);
+  return kGood;
+}
+
 int PrintSummary(const std::string& path, const v2vouch::evaluation::RunLog& log, bool as_json) {
   using namespace v2vouch::evaluation;
   std::fputs((as_json ? ListSummaryJson(log) : ListSummary(log)).c_str(), stdout);
@@ -160,6 +174,7 @@ struct Options {
   std::vector<std::string> joined;
   bool scorecard = false;
   bool as_json = false, summary = false, use_gates = false, spoof = false, message_checks = false;
+  bool warnings = false;
 };
 
 void AddOptions(CLI::App& app, Options& options) {
@@ -184,6 +199,8 @@ void AddOptions(CLI::App& app, Options& options) {
       "Further runs of the same drive whose LOCAL tracks are added (the ladder's vehicles "
       "alone)");
   app.add_flag("--gates", options.use_gates, "Exit code 1 when a gate is missed");
+  app.add_flag("--warnings", options.warnings,
+               "Warnings of three consumers against those on truth; contacts, needless braking");
   auto* of_spoof =
       app.add_flag("--spoof", options.spoof, "Spoof resistance instead of tracking accuracy");
   app.add_flag("--message-checks", options.message_checks,
@@ -206,6 +223,7 @@ int main(int argc, char** argv) {
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-eval", argc, argv)) return *code;
 
   const std::string& log_path = options.log_path;
+  if (options.warnings) return PrintWarnings(log_path, options.as_json);
   if (options.spoof) return JudgeLies(log_path, options.message_checks, options.as_json);
   RunLog log;
   if (!Load(log_path, log)) return kFailed;

@@ -12,6 +12,7 @@
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/daemon_status_t.hpp"
+#include "v2vouch/ego_intent_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
@@ -22,6 +23,7 @@
 #include "v2vouch/track_list_t.hpp"
 #include "v2vouch/truth_bsm_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
+#include "v2vouch/warning_list_t.hpp"
 
 namespace v2vouch::wire {
 namespace {
@@ -54,6 +56,8 @@ bool LengthsFit(const daemon_status_t& m) {
   return Fits(m.num_inputs, m.inputs) && Fits(m.num_refusals, m.refusals) &&
          Fits(m.num_refusal_details, m.refusal_details) && Fits(m.num_latencies, m.latencies);
 }
+bool LengthsFit(const ego_intent_t& m) { return Fits(m.num_points, m.points); }
+bool LengthsFit(const warning_list_t& m) { return Fits(m.num_warnings, m.warnings); }
 bool LengthsFit(const track_list_t& m) {
   return Fits(m.num_sectors, m.sectors) && Fits(m.num_tracks, m.tracks) &&
          std::ranges::all_of(
@@ -115,6 +119,8 @@ V2VOUCH_CODEC(text_t)
 V2VOUCH_CODEC(track_list_t)
 V2VOUCH_CODEC(truth_bsm_t)
 V2VOUCH_CODEC(truth_list_t)
+V2VOUCH_CODEC(ego_intent_t)
+V2VOUCH_CODEC(warning_list_t)
 #undef V2VOUCH_CODEC
 
 }  // namespace v2vouch::wire

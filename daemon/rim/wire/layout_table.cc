@@ -12,6 +12,7 @@
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/count_t.hpp"
 #include "v2vouch/daemon_status_t.hpp"
+#include "v2vouch/ego_intent_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/evidence_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
@@ -23,6 +24,7 @@
 #include "v2vouch/object_list_t.hpp"
 #include "v2vouch/object_t.hpp"
 #include "v2vouch/obu_status_t.hpp"
+#include "v2vouch/path_point_t.hpp"
 #include "v2vouch/radar_detection_t.hpp"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/refusal_t.hpp"
@@ -37,6 +39,8 @@
 #include "v2vouch/truth_list_t.hpp"
 #include "v2vouch/truth_object_t.hpp"
 #include "v2vouch/truth_sensor_t.hpp"
+#include "v2vouch/warning_list_t.hpp"
+#include "v2vouch/warning_t.hpp"
 
 namespace v2vouch::wire {
 namespace {
@@ -525,6 +529,63 @@ constexpr Field kTruthListFields[] = {
 };
 constexpr Layout kTruthList = MakeLayout("truth_list_t", kTruthListFields, 8 * 1024 * 1024);
 
+constexpr Field kPathPointFields[] = {
+    {.name = "x_body_m", .kind = Kind::kDouble},
+    {.name = "y_body_m", .kind = Kind::kDouble},
+};
+constexpr Layout kPathPoint = MakeLayout("path_point_t", kPathPointFields);
+
+constexpr Field kEgoIntentFields[] = {
+    {.name = "utime", .kind = Kind::kInt64},
+    {.name = "turn_signal", .kind = Kind::kInt8},
+    {.name = "brake", .kind = Kind::kInt8},
+    {.name = "accel_request_mps2", .kind = Kind::kDouble},
+    {.name = "num_points", .kind = Kind::kInt32},
+    {.name = "points", .kind = Kind::kStruct, .type = &kPathPoint, .max_count = 1024},
+};
+constexpr Layout kEgoIntent = MakeLayout("ego_intent_t", kEgoIntentFields, 32 * 1024);
+
+constexpr Field kWarningFields[] = {
+    {.name = "track_id", .kind = Kind::kInt64},
+    {.name = "local_id", .kind = Kind::kInt64},
+    {.name = "kind", .kind = Kind::kInt8},
+    {.name = "level", .kind = Kind::kInt8},
+    {.name = "side", .kind = Kind::kInt8},
+    {.name = "source", .kind = Kind::kInt8},
+    {.name = "visibility", .kind = Kind::kInt8},
+    {.name = "basis", .kind = Kind::kInt8},
+    {.name = "since_utime", .kind = Kind::kInt64},
+    {.name = "conflict_probability", .kind = Kind::kDouble},
+    {.name = "time_to_conflict_s", .kind = Kind::kDouble},
+    {.name = "time_to_conflict_early_s", .kind = Kind::kDouble},
+    {.name = "post_encroachment_s", .kind = Kind::kDouble},
+    {.name = "required_decel_mps2", .kind = Kind::kDouble},
+    {.name = "warn_before_s", .kind = Kind::kDouble},
+    {.name = "urgent_before_s", .kind = Kind::kDouble},
+    {.name = "conflict_x_body_m", .kind = Kind::kDouble},
+    {.name = "conflict_y_body_m", .kind = Kind::kDouble},
+    {.name = "x_body_m", .kind = Kind::kDouble},
+    {.name = "y_body_m", .kind = Kind::kDouble},
+    {.name = "speed_mps", .kind = Kind::kDouble},
+    {.name = "existence", .kind = Kind::kDouble},
+    {.name = "own_sensor_age_s", .kind = Kind::kDouble},
+    {.name = "bridge_budget_s", .kind = Kind::kDouble},
+};
+constexpr Layout kWarning = MakeLayout("warning_t", kWarningFields);
+
+constexpr Field kWarningListFields[] = {
+    {.name = "utime", .kind = Kind::kInt64},
+    {.name = "seq", .kind = Kind::kInt64},
+    {.name = "local_seq", .kind = Kind::kInt64},
+    {.name = "priority_seq", .kind = Kind::kInt64},
+    {.name = "available_kinds", .kind = Kind::kInt32},
+    {.name = "unavailable_kinds", .kind = Kind::kInt32},
+    {.name = "degraded", .kind = Kind::kInt32},
+    {.name = "num_warnings", .kind = Kind::kInt32},
+    {.name = "warnings", .kind = Kind::kStruct, .type = &kWarning, .max_count = 4096},
+};
+constexpr Layout kWarningList = MakeLayout("warning_list_t", kWarningListFields, 1024 * 1024);
+
 }  // namespace
 
 #define V2VOUCH_LAYOUT(Type, layout) \
@@ -566,6 +627,10 @@ V2VOUCH_LAYOUT(truth_sensor_t, kTruthSensor)
 V2VOUCH_LAYOUT(truth_object_t, kTruthObject)
 V2VOUCH_LAYOUT(truth_bsm_t, kTruthBsm)
 V2VOUCH_LAYOUT(truth_list_t, kTruthList)
+V2VOUCH_LAYOUT(ego_intent_t, kEgoIntent)
+V2VOUCH_LAYOUT(path_point_t, kPathPoint)
+V2VOUCH_LAYOUT(warning_t, kWarning)
+V2VOUCH_LAYOUT(warning_list_t, kWarningList)
 #undef V2VOUCH_LAYOUT
 
 }  // namespace v2vouch::wire

@@ -17,6 +17,7 @@
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/daemon_status_t.hpp"
+#include "v2vouch/ego_intent_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
@@ -27,6 +28,7 @@
 #include "v2vouch/track_list_t.hpp"
 #include "v2vouch/truth_bsm_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
+#include "v2vouch/warning_list_t.hpp"
 
 namespace v2vouch::wire {
 namespace {
@@ -166,7 +168,7 @@ class CodecProperty : public testing::Test {};
 using AllTypes =
     testing::Types<bsm_t, calibration_t, camera_detections_t, camera_image_t, daemon_status_t,
                    ego_motion_t, gnss_fix_t, misbehavior_report_t, object_list_t, obu_status_t,
-                   radar_scan_t, text_t, track_list_t, truth_list_t>;
+                   radar_scan_t, text_t, track_list_t, truth_list_t, ego_intent_t, warning_list_t>;
 TYPED_TEST_SUITE(CodecProperty, AllTypes);
 
 TYPED_TEST(CodecProperty, WellFormedBytesComeBackBitForBit) {

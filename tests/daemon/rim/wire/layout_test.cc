@@ -17,6 +17,7 @@
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/daemon_status_t.hpp"
+#include "v2vouch/ego_intent_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
@@ -27,6 +28,7 @@
 #include "v2vouch/track_list_t.hpp"
 #include "v2vouch/truth_bsm_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
+#include "v2vouch/warning_list_t.hpp"
 
 namespace v2vouch::wire {
 namespace {
@@ -97,7 +99,7 @@ TEST(LayoutTable, EqualsTheLcmFilesFieldByField) {
         &LayoutOf<daemon_status_t>(), &LayoutOf<ego_motion_t>(), &LayoutOf<gnss_fix_t>(),
         &LayoutOf<misbehavior_report_t>(), &LayoutOf<object_list_t>(), &LayoutOf<obu_status_t>(),
         &LayoutOf<radar_scan_t>(), &LayoutOf<text_t>(), &LayoutOf<track_list_t>(),
-        &LayoutOf<truth_list_t>()}) {
+        &LayoutOf<truth_list_t>(), &LayoutOf<ego_intent_t>(), &LayoutOf<warning_list_t>()}) {
     EXPECT_GT(layout->max_bytes, layout->min_bytes + 8) << layout->name;
     Describe(*layout, table);
   }
