@@ -16,6 +16,54 @@ function(v2vouch_install_program name)
     set(component viewer)
   endif()
   install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT ${component})
+  set_property(GLOBAL APPEND PROPERTY V2VOUCH_PROGRAMS_${component} ${name})
+endfunction()
+
+# Man pages and completions, made from what each program answers to --help.
+function(v2vouch_install_manuals)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  foreach(component programs viewer)
+    get_property(programs GLOBAL PROPERTY V2VOUCH_PROGRAMS_${component})
+    if(NOT programs)
+      continue()
+    endif()
+    set(out "${PROJECT_BINARY_DIR}/packaging/manuals_${component}")
+    set(files "")
+    foreach(program ${programs})
+      list(APPEND files $<TARGET_FILE:${program}>)
+    endforeach()
+    add_custom_command(OUTPUT "${out}/stamp"
+      COMMAND ${CMAKE_COMMAND} -E rm -rf "${out}"
+      COMMAND ${Python3_EXECUTABLE} "${PROJECT_SOURCE_DIR}/scripts/manual_pages" "${out}" ${files}
+      COMMAND ${CMAKE_COMMAND} -E touch "${out}/stamp"
+      DEPENDS ${programs} "${PROJECT_SOURCE_DIR}/scripts/manual_pages"
+      COMMENT "man pages and completions of ${component}" VERBATIM)
+    add_custom_target(v2vouch_manuals_${component} ALL DEPENDS "${out}/stamp")
+    install(DIRECTORY "${out}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}" COMPONENT ${component})
+    install(DIRECTORY "${out}/bash/"
+      DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT ${component})
+    install(DIRECTORY "${out}/zsh/"
+      DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions" COMPONENT ${component})
+  endforeach()
+endfunction()
+
+# The service with its settings. Under the prefix /usr the system's own places are meant (/etc).
+function(v2vouch_install_service)
+  set(V2VOUCH_SYSCONFDIR "${CMAKE_INSTALL_FULL_SYSCONFDIR}")
+  set(etc "${CMAKE_INSTALL_SYSCONFDIR}")
+  if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+    set(etc /etc)
+  endif()
+  set(templates "${PROJECT_SOURCE_DIR}/scripts/packaging")
+  set(generated "${PROJECT_BINARY_DIR}/packaging")
+  configure_file("${templates}/v2vouchd.service.in" "${generated}/v2vouchd.service" @ONLY)
+  install(FILES "${generated}/v2vouchd.service" DESTINATION lib/systemd/system COMPONENT programs)
+  install(FILES "${templates}/60-v2vouch.conf" DESTINATION lib/sysctl.d COMPONENT programs)
+  install(FILES "${templates}/v2vouchd.default" DESTINATION "${etc}/default" RENAME v2vouchd
+    COMPONENT programs)
+  install(FILES daemon/vehicles/vehicle.yaml DESTINATION "${etc}/v2vouch" COMPONENT programs)
+  install(FILES "${templates}/v2vouch.nft"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/v2vouch/examples" COMPONENT programs)
 endfunction()
 
 # The files that programs look for, installed, and as links for the programs of the build tree.

@@ -55,6 +55,39 @@ v2vouch-replay drive.lcm --config "${prefix}/share/v2vouch/config/vehicle.yaml" 
   >/dev/null || fail "v2vouch-replay"
 v2vouch-eval tracks.lcm --report report >/dev/null 2>&1 || fail "v2vouch-eval"
 
+# Man page and completions of every program, with every option of --help in them.
+for program in "${prefix}"/bin/*; do
+  name="$(basename "${program}")"
+  page="$(ls "${prefix}"/share/man/man[18]/"${name}".[18].gz)" || fail "no man page of ${name}"
+  text="$(zcat "${page}" | sed 's/\\-/-/g')"
+  completion="${prefix}/share/bash-completion/completions/${name}"
+  bash -n "${completion}" || fail "bash completion of ${name}"
+  head -1 "${prefix}/share/zsh/vendor-completions/_${name}" | grep -q "^#compdef ${name}$" ||
+    fail "zsh completion of ${name}"
+  if command -v zsh >/dev/null; then zsh -n "${prefix}/share/zsh/vendor-completions/_${name}"; fi
+  while read -r option; do
+    grep -qF -- "${option}" <<<"${text}" || fail "${option} is not in the man page of ${name}"
+    grep -qF -- "${option}" "${completion}" || fail "${option} is not completed for ${name}"
+  done < <("${program}" --help | grep -oE '^  [^ ]*--[a-z0-9-]+' | grep -oE -- '--[a-z0-9-]+')
+done
+complete_words() {  # Of a command line, as bash would offer them.
+  local -a COMP_WORDS=("$@") COMPREPLY=()
+  local COMP_CWORD=$(($# - 1))
+  source "${prefix}/share/bash-completion/completions/$1"
+  "_${1//-/_}"
+  echo "${COMPREPLY[*]}"
+}
+[[ "$(complete_words v2vouch-sim r)" == run ]] || fail "completion of a subcommand"
+[[ "$(complete_words v2vouch-sim run --vehicle)" == --vehicle-out ]] || fail "its options"
+unit="$(find "${prefix}" -name v2vouchd.service)"
+for line in Type=notify WatchdogSec=2 DynamicUser=yes ProtectSystem=strict; do
+  grep -qx "${line}" "${unit}" || fail "${line} is not in the unit"
+done
+if command -v systemd-analyze >/dev/null; then
+  sed "s|^ExecStart=[^ ]*|ExecStart=/bin/true|" "${unit}" >v2vouchd.service
+  systemd-analyze verify --man=no ./v2vouchd.service || fail "systemd-analyze verify"
+fi
+
 # Somebody else's program, three ways.
 cmake -S . -B cmake_build -DCMAKE_PREFIX_PATH="${prefix}" >cmake.txt 2>&1 ||
   { cat cmake.txt; fail "find_package(v2vouch)"; }
