@@ -45,7 +45,7 @@ publishes them, live or from a log.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME v2vouch-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-  "liblcm-dev, libglib2.0-dev, libeigen3-dev, libssl-dev, pkg-config | pkgconf")
+  "liblcm-dev, liblcm-bin, libglib2.0-dev, libeigen3-dev, libssl-dev, pkg-config | pkgconf")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "message types and wire library of V2Vouch
 LCM message types (.lcm files and C++ headers), and the library that turns
 message bytes into plain structs and refuses hostile ones. With CMake package

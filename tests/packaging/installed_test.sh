@@ -22,6 +22,7 @@ if [[ "${2:-}" != --inside ]]; then
   sed '$a\' "${build}/install_manifest.txt" >"${place}/manifest.txt"  # Ends without a newline.
   mkdir "${place}/work"
   cp "${source}/tests/packaging/consumer/"* "${place}/work/"
+  cp -r "${source}/examples" "${place}/work/"
   cp "${BASH_SOURCE[0]}" "${place}/test.sh"
   unshare "${flags[@]}" bash -c '
     mount -t tmpfs none "$1" || exit 77
@@ -96,6 +97,9 @@ library="$(dirname "$(find "${prefix}" -name v2vouch.pc)")"
 export PKG_CONFIG_PATH="${library}"
 eval "g++ -std=c++17 types_only.cc -o by_pkg_config $(pkg-config --cflags --libs v2vouch)" ||
   fail "pkg-config v2vouch"
+cmake -S examples/cpp -B examples_build -DCMAKE_PREFIX_PATH="${prefix}" >cmake.txt 2>&1 &&
+  cmake --build examples_build >>cmake.txt 2>&1 || { cat cmake.txt; fail "examples by find_package"; }
+examples_build/consume_lists "file://tracks.lcm?speed=0" | grep -q "LOCAL " || fail "C++ consumer of a log"
 for program in cmake_build/types_only cmake_build/wire ./by_pkg_config; do
   [[ "$("${program}")" == good ]] || fail "${program}"
 done
