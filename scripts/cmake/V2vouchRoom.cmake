@@ -18,6 +18,7 @@ function(v2vouch_add_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE v2vouch_options ${ARG_LINK})
+  v2vouch_install_program(${name})
 endfunction()
 
 # v2vouch_add_test(NAME SOURCES file... LINK lib... [LABELS label...] [TIMEOUT s])

@@ -5,21 +5,14 @@
 #include <cctype>
 
 #include "daemon/common/base/did_you_mean.h"
+#include "daemon/rim/program/shipped_folder.h"
 #include "sim/world/overlay.h"
 
 namespace v2vouch::sim {
 namespace {
 
-std::filesystem::path Folder(const char* installed_as, const char* in_source_tree) {
-  std::error_code ignored;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  const auto installed = self.parent_path().parent_path() / "share/v2vouch" / installed_as;
-  if (std::filesystem::is_directory(installed, ignored)) return installed;
-  return in_source_tree;
-}
-
-std::filesystem::path ScenarioFolder() { return Folder("scenarios", V2VOUCH_SCENARIO_DIR); }
-std::filesystem::path OverlayFolder() { return Folder("catalogue", V2VOUCH_CATALOGUE_DIR); }
+std::filesystem::path ScenarioFolder() { return ShippedFolder("scenarios"); }
+std::filesystem::path OverlayFolder() { return ShippedFolder("attacks"); }
 
 std::vector<std::filesystem::path> YamlFiles(const std::filesystem::path& folder,
                                              std::string& problem) {

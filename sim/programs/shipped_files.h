@@ -7,9 +7,8 @@
 
 namespace v2vouch::sim {
 
-/// The YAML files that come with the simulator: beside an installed program
-/// (share/v2vouch/scenarios and /catalogue), else in the source tree it was built from. Ordered by
-/// name; empty with `problem` set when the folder cannot be read.
+/// The YAML files that come with the simulator, in folders `scenarios` and `attacks` of
+/// ShippedFolder(). Ordered by name; empty with `problem` set when the folder cannot be read.
 std::vector<std::filesystem::path> ShippedScenarios(std::string& problem);
 std::vector<std::filesystem::path> ShippedOverlays(std::string& problem);
 

@@ -13,6 +13,7 @@
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/std_streams.h"
 #include "daemon/rim/program/command_line.h"
+#include "daemon/rim/program/shipped_folder.h"
 #include "sim/campaign/report.h"
 #include "sim/campaign/runner.h"
 #include "sim/campaign/summary.h"
@@ -230,7 +231,8 @@ int RunCampaign(const Options& options) {
   }
   if (problems.empty() && options.field) {
     settings.paper_config = out / "vehicle_paper.yaml";
-    if (!SettleConfig(V2VOUCH_PAPER_CONFIG, settings.paper_config, problem)) {
+    if (!SettleConfig(v2vouch::ShippedFolder("config") / "vehicle_paper.yaml",
+                      settings.paper_config, problem)) {
       problems.push_back(problem);
     }
   }

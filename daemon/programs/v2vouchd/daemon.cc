@@ -17,10 +17,13 @@
 #include "daemon/programs/v2vouchd/message_queue.h"
 #include "daemon/programs/v2vouchd/receiver.h"
 #include "daemon/programs/v2vouchd/trust_keeper.h"
+#include "daemon/programs/v2vouchd/watchdog.h"
 #include "daemon/rim/engine/calibration_in_force.h"
 #include "daemon/rim/engine/engine.h"
 #include "daemon/rim/io/lcm_url.h"
+#include "daemon/rim/io/service_notifier.h"
 #include "daemon/rim/io/socket_figures.h"
+#include "daemon/rim/io/stop_signal.h"
 #include "daemon/rim/lcm_packets/packet_fault.h"
 
 namespace v2vouch {
@@ -77,10 +80,15 @@ class Daemon {
 
   DaemonSummary Run(const std::function<bool()>& must_stop) {
     engine_.RestoreTrust(trust_.Load());
+    // Ready also without a route: waiting for one is no reason to hold up a boot or to be
+    // restarted.
+    manager_.Send("READY=1\nSTATUS=waiting for the LCM bus");
     while (!must_stop() && !own_bus_->is_open()) {
       ReportWaiting();
+      TellManager(Clock::now(), Clock::now());  // Nothing can be published yet.
       std::this_thread::sleep_for(kPopTimeout);
     }
+    manager_.Send("STATUS=running");
     spdlog::info("event=started version={} inputs={}", V2VOUCH_VERSION, engine_.channels().size());
     if (ports_.size() == 2 && ports_[0] == ports_[1] && ports_[0] != 0) {
       spdlog::warn(
@@ -91,12 +99,15 @@ class Daemon {
     }
     LogCalibration();
     engine_.Start(outbox_);
+    last_published_ = Clock::now();
     Publish();
     last_list_ = last_status_ = last_housekeeping_ = last_tick_ = Clock::now();
     while (!must_stop()) {
       if (const auto arrival = queue_.Pop(kPopTimeout)) Take(*arrival);
       OnTime(Clock::now());
+      TellManager(Clock::now(), last_published_);
     }
+    manager_.Send("STOPPING=1");
     trust_.Finish(engine_.TrustToKeep());
     return Summary();
   }
@@ -182,6 +193,20 @@ class Daemon {
     }
   }
 
+  // Feeds the watchdog while all parts go on; answers SIGHUP.
+  void TellManager(Clock::time_point now, Clock::time_point last_published) {
+    std::array<std::int64_t, 2> ticks{own_bus_->ticks(), v2v_bus_ ? v2v_bus_->ticks() : 0};
+    const std::size_t buses = v2v_bus_ ? 2 : 1;
+    if (watchdog_.IsToBeFed(now, std::span(ticks).first(buses), last_published)) {
+      manager_.Send("WATCHDOG=1");
+    }
+    if (TakeReloadAsked()) {
+      spdlog::warn(
+          "event=reload_asked hint=\"settings are read at start only: restart me (systemctl "
+          "restart v2vouchd); lists come again within a second\"");
+    }
+  }
+
   void Publish() {
     for (const Outbox::Message& message : outbox_.messages()) {
       const bool is_watched = std::ranges::any_of(
@@ -192,6 +217,7 @@ class Daemon {
         continue;
       }
       own_bus_->Publish(message.channel, message.bytes);
+      last_published_ = Clock::now();
       if (message.channel == config_.lcm.channels.status) last_status_ = Clock::now();
     }
   }
@@ -388,6 +414,9 @@ class Daemon {
   int stale_round_ = 0;
   Clock::time_point last_list_{};
   Clock::time_point last_tick_{};
+  Clock::time_point last_published_{};
+  ServiceNotifier manager_ = ServiceNotifier::FromEnvironment();
+  Watchdog watchdog_{manager_.watchdog(), Clock::now()};
   Clock::time_point last_status_{};
   Clock::time_point last_housekeeping_{};
   // Last, so that they stop before anything they push into is gone.

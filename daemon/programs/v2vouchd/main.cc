@@ -25,7 +25,8 @@ Examples:
   v2vouchd --config vehicle.yaml --print-config
 
 Publishes TRACKS_LOCAL, TRACKS_PRIORITY, TRACKS_V2V, MISBEHAVIOR, CALIBRATION, V2VOUCH_CONFIG and,
-once a second, V2VOUCH_STATUS. Ends on Ctrl-C or SIGTERM.
+once a second, V2VOUCH_STATUS. Ends on Ctrl-C or SIGTERM; SIGHUP only says in the log that settings need a restart.
+Under systemd (Type=notify) it tells when it runs, and feeds the watchdog while all its parts go on.
 
 Exit codes: 0 ended on request; 1 something failed while running; 2 usage or configuration.)";
 
@@ -150,6 +151,7 @@ int main(int argc, char** argv) {
     spdlog::info("event=no_network hint=\"boxes come from smart cameras\"");
   }
   v2vouch::HandleStopSignals();
+  v2vouch::HandleReloadSignal();
   try {
     PrintSummary(v2vouch::RunDaemon(config, detector.get(), v2vouch::IsStopAsked));
   } catch (const std::exception& error) {

@@ -48,10 +48,12 @@ void Receiver::Run() {
        pause = std::min(2 * pause, kLongestPause)) {
     ++failures_;
     for (milliseconds waited{0}; waited < pause && !must_stop_; waited += kSlice) {
+      ++ticks_;
       std::this_thread::sleep_for(kSlice);
     }
   }
   while (!must_stop_) {
+    ++ticks_;
     if (!bus_->Handle(kHandleTimeout_ms)) std::this_thread::sleep_for(kSlice);
   }
 }

@@ -37,6 +37,8 @@ class Receiver {
   [[nodiscard]] lcm_packets::PacketCounts refused() const {
     return is_open_ ? bus_->refused() : lcm_packets::PacketCounts{};
   }
+  /// Counts up while the thread lives: waiting for a message, for a route, or handling.
+  [[nodiscard]] std::int64_t ticks() const { return ticks_; }
   /// How often the multicast group had to be joined again.
   [[nodiscard]] std::int64_t rejoins() const { return is_open_ ? bus_->rejoins() : 0; }
 
@@ -51,6 +53,7 @@ class Receiver {
   std::atomic<bool> is_open_ = false;
   std::atomic<bool> must_stop_ = false;
   std::atomic<int> failures_ = 0;
+  std::atomic<std::int64_t> ticks_ = 0;
   std::thread thread_;
 };
 

@@ -51,6 +51,18 @@ void OnReceive(const lcm_recv_buf_t* buffer, const char*, void* user) {
   }
 }
 
+// For every channel. A bare header is left out: its channel is that of an older message.
+void OnReceiveAny(const lcm_recv_buf_t* buffer, const char* channel, void* user) {
+  if (buffer->data_size > kMaxEventBytes) return;
+  try {
+    (*static_cast<const LcmBus::AnyHandler*>(user))(
+        channel, {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size},
+        FromMicros(buffer->recv_utime));
+  } catch (...) {
+    // As above.
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<LcmBus> LcmBus::Open(const std::string& url) {
@@ -80,6 +92,20 @@ bool LcmBus::Subscribe(const std::string& channel, Handler handler) {
   if (taken == nullptr) return false;
   lcm_subscription_set_queue_capacity(taken, kLiblcmQueue);
   subscriptions_.push_back(std::move(subscription));
+  return true;
+}
+
+bool LcmBus::SubscribeAll(AnyHandler handler) {
+  if (const auto own = OwnReceiverUrl(url_)) {
+    if (!receiver_) receiver_ = UdpmReceiver::Open(*own);
+    if (!receiver_) return false;
+    receiver_->SubscribeAll(std::move(handler));
+    return true;
+  }
+  any_ = std::make_unique<AnyHandler>(std::move(handler));
+  lcm_subscription_t* taken = lcm_subscribe(lcm_, ".*", OnReceiveAny, any_.get());
+  if (taken == nullptr) return false;
+  lcm_subscription_set_queue_capacity(taken, kLiblcmQueue);
   return true;
 }
 

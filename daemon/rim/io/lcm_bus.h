@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/common/base/time.h"
@@ -43,6 +44,11 @@ class LcmBus {
   /// throw and runs in Handle(). @return false when it cannot be, e.g. for want of a route.
   bool Subscribe(const std::string& channel, Handler handler);
 
+  /// Hears every channel, for programs that record or look. @return false when it cannot be.
+  using AnyHandler = std::function<void(std::string_view channel,
+                                        std::span<const std::uint8_t> bytes, Timestamp received)>;
+  bool SubscribeAll(AnyHandler handler);
+
   /// Waits up to `timeout_ms` for messages and handles one, or the few that wait. @return false
   /// when the bus is broken.
   bool Handle(int timeout_ms);
@@ -63,6 +69,7 @@ class LcmBus {
   std::string url_;
   std::unique_ptr<UdpmReceiver> receiver_;  // From the first subscription on.
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
+  std::unique_ptr<AnyHandler> any_;
 };
 
 }  // namespace v2vouch

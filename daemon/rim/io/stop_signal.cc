@@ -14,6 +14,7 @@ namespace {
 constexpr suseconds_t kPatience_us = 800'000;
 
 volatile sig_atomic_t stop_asked = 0;
+volatile sig_atomic_t reload_asked = 0;
 
 // Signal handlers: only what is safe at any moment.
 void EndNow(int) {
@@ -33,6 +34,8 @@ void AskToStop(int signal) {
   setitimer(ITIMER_REAL, &patience, nullptr);
 }
 
+void AskToReload(int) { reload_asked = 1; }
+
 void Handle(int number, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
@@ -50,5 +53,13 @@ void HandleStopSignals() {
 }
 
 bool IsStopAsked() { return stop_asked != 0; }
+
+void HandleReloadSignal() { Handle(SIGHUP, AskToReload); }
+
+bool TakeReloadAsked() {
+  const bool was_asked = reload_asked != 0;
+  reload_asked = 0;
+  return was_asked;
+}
 
 }  // namespace v2vouch

@@ -10,4 +10,10 @@ void HandleStopSignals();
 /// Whether a stop was asked for.
 [[nodiscard]] bool IsStopAsked();
 
+/// SIGHUP is only remembered from now on, instead of ending the program.
+void HandleReloadSignal();
+
+/// Whether SIGHUP has come since this was last asked.
+[[nodiscard]] bool TakeReloadAsked();
+
 }  // namespace v2vouch

@@ -42,7 +42,7 @@ std::unique_ptr<UdpmReceiver> UdpmReceiver::Open(const UdpmUrl& url) {
 
 UdpmReceiver::UdpmReceiver(std::unique_ptr<net::UdpReceiver> socket)
     : socket_(std::move(socket)),
-      assembler_([this](std::string_view channel) { return handlers_.contains(channel); },
+      assembler_([this](std::string_view channel) { return any_ || handlers_.contains(channel); },
                  {.message_bytes = kMaxEventBytes}) {}
 
 void UdpmReceiver::Subscribe(const std::string& channel, Handler handler) {
@@ -70,8 +70,15 @@ void UdpmReceiver::Take(const net::Datagram& datagram, std::int64_t now_us) {
   const auto message = assembler_.Take(datagram.bytes, sender, now_us);
   if (!message) return;
   const auto found = handlers_.find(message->channel);
-  if (found == handlers_.end()) return;
   const Timestamp received = datagram.utime != 0 ? FromMicros(datagram.utime) : WallClock();
+  if (any_) {
+    try {
+      any_(message->channel, message->bytes, received);
+    } catch (...) {
+      // As below.
+    }
+  }
+  if (found == handlers_.end()) return;
   for (const Handler& handler : found->second) {
     try {
       handler(message->bytes, message->bytes.size(), received);

@@ -8,7 +8,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "daemon/common/base/time.h"
@@ -29,6 +31,10 @@ class UdpmReceiver {
   static std::unique_ptr<UdpmReceiver> Open(const UdpmUrl& url);
 
   void Subscribe(const std::string& channel, Handler handler);
+  /// Hears every channel, besides those subscribed to. Set before the first Handle().
+  using AnyHandler = std::function<void(std::string_view channel,
+                                        std::span<const std::uint8_t> bytes, Timestamp received)>;
+  void SubscribeAll(AnyHandler handler) { any_ = std::move(handler); }
   /// Waits up to `timeout_ms` for datagrams, then takes those that wait, up to a batch.
   void Handle(int timeout_ms);
 
@@ -50,6 +56,7 @@ class UdpmReceiver {
 
   std::unique_ptr<net::UdpReceiver> socket_;
   std::unordered_map<std::string, std::vector<Handler>, NameHash, std::equal_to<>> handlers_;
+  AnyHandler any_;
   lcm_packets::Assembler assembler_;
   std::array<std::atomic<std::uint64_t>, lcm_packets::kPacketFaultCount> refused_{};
   std::atomic<std::int64_t> rejoins_ = 0;

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace v2vouch {
+
+/// One row per message of a channel, or, where fields of one list are asked for, one per element.
+/// Fields by their names in the .lcm file: "speed_mps", "tracks.x_body_m", "covariance_body[7]",
+/// "inputs.channel". Columns: recorded_utime, then the fields as given; strings are quoted where
+/// CSV wants it, numbers exact, NaN as nan.
+/// @param fields empty: all of the type that are no list.
+/// @return rows written; nullopt with `error` (an unknown field with the one that was probably
+/// meant).
+std::optional<std::int64_t> WriteCsv(const std::string& log, const std::string& channel,
+                                     std::vector<std::string> fields, std::FILE* out,
+                                     std::string& error);
+
+}  // namespace v2vouch
