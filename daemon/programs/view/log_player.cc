@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "daemon/rim/wire/codec.h"
+#include "v2vouch/text_t.hpp"
+
 namespace v2vouch {
 namespace {
 
@@ -17,6 +20,19 @@ constexpr std::chrono::milliseconds kMostWork{
     30};  // Per call, so that clients are not kept waiting.
 
 }  // namespace
+
+std::string ConfigIn(const std::string& log) {
+  std::string ignored;
+  const auto reader = LogReader::Open(log, ignored);
+  LogEvent event;
+  constexpr int kFirstEvents = 1000;
+  for (int i = 0; reader && i < kFirstEvents && reader->Next(event); ++i) {
+    if (event.channel != wire::ChannelNames{}.config) continue;
+    const auto message = wire::Decode<text_t>(event.bytes);
+    if (message) return message->text;
+  }
+  return {};
+}
 
 std::unique_ptr<LogPlayer> LogPlayer::Open(const std::string& path, view::Scene& scene,
                                            const Progress& progress, std::string& error) {
@@ -54,6 +70,7 @@ bool LogPlayer::Index(const Progress& progress) {
     if (++count % 4096 == 0 && !progress(reader_->progress())) return false;
   }
   damaged_ = reader_->damaged();
+  has_lists_ = scene_.list_utime() != 0;
   scene_.events().Freeze();
   state_.begin_us = marks_.empty() ? 0 : marks_.front().received_us;
   state_.end_us = newest;

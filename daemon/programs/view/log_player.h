@@ -13,6 +13,10 @@
 
 namespace v2vouch {
 
+/// The configuration that the daemon stored with a log (V2VOUCH_CONFIG among its first thousand
+/// events); "" = none.
+std::string ConfigIn(const std::string& log);
+
 /// Plays a log of any size into a scene. The log is read once at start: where in the file each
 /// quarter of a second begins, and what happened, for the time line. Memory: 16 bytes per mark.
 class LogPlayer : public view::Player {
@@ -29,6 +33,8 @@ class LogPlayer : public view::Player {
   /// Moves on by the time since the last call.
   void Advance(std::chrono::steady_clock::time_point now);
   [[nodiscard]] std::int64_t damaged() const { return damaged_; }
+  /// Whether the log holds lists; one of inputs alone shows no vehicle.
+  [[nodiscard]] bool has_lists() const { return has_lists_; }
 
  private:
   struct Mark {
@@ -48,6 +54,7 @@ class LogPlayer : public view::Player {
   LogEvent next_;
   bool has_next_ = false;
   std::int64_t damaged_ = 0;
+  bool has_lists_ = false;
   std::chrono::steady_clock::time_point advanced_{};
 };
 

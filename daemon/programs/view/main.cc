@@ -12,6 +12,7 @@
 #include "daemon/programs/view/live_source.h"
 #include "daemon/programs/view/log_player.h"
 #include "daemon/programs/view/server.h"
+#include "daemon/rim/config/yaml_reader.h"
 #include "daemon/rim/engine/daemon_config.h"
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/std_streams.h"
@@ -106,9 +107,8 @@ int Run(const Options& options, const v2vouch::DaemonConfig& config) {
       std::cerr << "v2vouch-view: " << error << '\n';
       return kExitFailed;
     }
-    if (scene.list_utime() == 0) {
-      std::cerr << "v2vouch-view: note: no list in the first seconds; a log of inputs alone needs "
-                   "v2vouch-replay first\n";
+    if (!player->has_lists()) {
+      std::cerr << "v2vouch-view: note: the log holds no lists; run v2vouch-replay over it first\n";
     }
   } else {
     const std::string url = options.lcm_url.empty() ? config.lcm.url : options.lcm_url;
@@ -169,7 +169,14 @@ int main(int argc, char** argv) {
   if (!is_loopback) options.rules.hosts.push_back(options.bind);
   v2vouch::DaemonConfig config;
   std::vector<std::string> problems;
-  if (!v2vouch::LoadDaemonConfig(options.config, config, problems)) {
+  // A log says itself which vehicle it is of.
+  const std::string stored =
+      options.log.empty() || !options.config.empty() ? "" : v2vouch::ConfigIn(options.log);
+  const bool is_good =
+      stored.empty()
+          ? v2vouch::LoadDaemonConfig(options.config, config, problems)
+          : v2vouch::config::Parse(stored, options.log + " (V2VOUCH_CONFIG)", config, problems);
+  if (!is_good) {
     for (const std::string& problem : problems) std::cerr << problem << '\n';
     return v2vouch::kExitUsage;
   }
