@@ -172,11 +172,12 @@ int main(int argc, char** argv) {
   // A log says itself which vehicle it is of.
   const std::string stored =
       options.log.empty() || !options.config.empty() ? "" : v2vouch::ConfigIn(options.log);
-  const bool is_good =
-      stored.empty()
-          ? v2vouch::LoadDaemonConfig(options.config, config, problems)
-          : v2vouch::config::Parse(stored, options.log + " (V2VOUCH_CONFIG)", config, problems);
-  if (!is_good) {
+  if (!stored.empty()) {  // Another version's may have other keys; what is known is taken.
+    v2vouch::config::Parse(stored, options.log + " (V2VOUCH_CONFIG)", config, problems);
+    for (const std::string& problem : problems) {
+      std::cerr << "v2vouch-view: note: " << problem << '\n';
+    }
+  } else if (!v2vouch::LoadDaemonConfig(options.config, config, problems)) {
     for (const std::string& problem : problems) std::cerr << problem << '\n';
     return v2vouch::kExitUsage;
   }
