@@ -284,11 +284,14 @@ function showTransport() {
     withdrawn: ["bad", "w"], accused: ["bad", "A"], notice: ["bad", "n"] };
   g.font = "bold 11px system-ui, sans-serif";
   g.textAlign = "center";
+  let free = -Infinity;  // Letters do not overlap.
   for (const event of state.events) {
     const [colour, letter] = marks[event.kind] || ["soft", "?"];
     if (event.t < begin || event.t > end) continue;
     g.fillStyle = colours[colour];
     g.fillRect(x(event.t) - 0.75, 13, 1.5, h - 20);
+    if (x(event.t) < free) continue;
+    free = x(event.t) + 9;
     g.fillText(letter, Math.min(w - 5, Math.max(5, x(event.t))), 11);
   }
 }
