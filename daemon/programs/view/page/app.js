@@ -5,7 +5,7 @@ const $ = (id) => document.getElementById(id);
 const view = new SceneView($("scene"));
 const strips = new Strips($("strips"));
 const state = { frame: null, clock: null, status: null, events: [], linked: false, arrived: 0, heard: 0, rx: 0,
-  seeks: 0, pictures: new Map(), drawWanted: false };
+  seeks: 0, pictures: new Map(), drawWanted: false, asked: null };
 if (new URLSearchParams(location.search).has("test")) window.__state = state;
 const LATE_S = 0.4;  // Looked at every 50 ms: grey half a second after the last list.
 
@@ -26,6 +26,8 @@ const client = new ViewClient({
   },
   clock(clock) {
     state.clock = clock;
+    // A clock that left before our command arrived does not undo it.
+    if (state.asked && performance.now() - state.asked.at < 400) clock.status = state.asked.status;
     state.heard = performance.now();
     if (clock.seeks !== undefined && clock.seeks !== state.seeks) {
       state.seeks = clock.seeks;
@@ -254,6 +256,8 @@ function seek(t) {
 function togglePlay() {
   if (!state.clock || state.clock.live) return;
   client.control(!playing(), Number($("speed").value), null);
+  state.asked = { status: playing() ? 1 : 0, at: performance.now() };
+  state.clock.status = state.asked.status;
 }
 function showTransport() {
   const clock = state.clock;
@@ -284,15 +288,20 @@ function showTransport() {
     withdrawn: ["bad", "w"], accused: ["bad", "A"], notice: ["bad", "n"] };
   g.font = "bold 11px system-ui, sans-serif";
   g.textAlign = "center";
-  let free = -Infinity;  // Letters do not overlap.
-  for (const event of state.events) {
-    const [colour, letter] = marks[event.kind] || ["soft", "?"];
-    if (event.t < begin || event.t > end) continue;
-    g.fillStyle = colours[colour];
+  const shown = state.events.filter((event) => event.t >= begin && event.t <= end);
+  for (const event of shown) {
+    g.fillStyle = colours[(marks[event.kind] || ["soft"])[0]];
     g.fillRect(x(event.t) - 0.75, 13, 1.5, h - 20);
-    if (x(event.t) < free) continue;
-    free = x(event.t) + 9;
-    g.fillText(letter, Math.min(w - 5, Math.max(5, x(event.t))), 11);
+  }
+  // Letters do not overlap; verdicts come first.
+  const taken = [], weight = (event) => ["accused", "withdrawn", "bridged", "validated"].indexOf(event.kind) + 1 || 9;
+  for (const event of shown.slice().sort((a, b) => weight(a) - weight(b))) {
+    const [colour, letter] = marks[event.kind] || ["soft", "?"];
+    const at = Math.min(w - 5, Math.max(5, x(event.t)));
+    if (taken.some((other) => Math.abs(other - at) < 9)) continue;
+    taken.push(at);
+    g.fillStyle = colours[colour];
+    g.fillText(letter, at, 11);
   }
 }
 

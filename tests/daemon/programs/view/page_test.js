@@ -6,6 +6,7 @@ const assert = require("node:assert");
 const { spawn, execFileSync } = require("node:child_process");
 const fs = require("node:fs");
 const http = require("node:http");
+const net = require("node:net");
 const path = require("node:path");
 const puppeteer = require("puppeteer-core");
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
@@ -14,7 +15,7 @@ const WebSocket = require("ws");
 const [bin, scratch] = process.argv.slice(2);
 const children = [];
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
-async function until(what, condition, ms = 8000) {
+async function until(what, condition, ms = 20000) {
   for (const end = Date.now() + ms; Date.now() < end; await sleep(20)) {
     const value = await condition();
     if (value) return value;
@@ -49,7 +50,7 @@ async function openPage(url) {
   });
   await page.setViewport({ width: 1100, height: 700 });
   await page.goto(url);
-  await page.waitForSelector("body[data-ready]", { timeout: 10000 });
+  await page.waitForSelector("body[data-ready]", { timeout: 30000 });
   return page;
 }
 const frameOf = (page) => page.evaluate(() => window.__state.frame);
@@ -102,10 +103,19 @@ test("a click on an event seeks there; keys play, pause and step", async () => {
   assert.ok(count > 0, "events");
   const at = await page.$eval("#events button", (b) => { b.click(); return Number(b.dataset.t); });
   await until("seek", () => page.evaluate((t) => Math.abs(window.__state.clock.now - (t - 500000)) < 400000, at));
+  const status = () => page.evaluate(() => window.__state.clock.status);
+  await control(page, false, 1, 1);
+  await until("pause", async () => (await status()) === 1);
   await page.keyboard.press(" ");
-  const before = await page.evaluate(() => window.__state.clock.status);
+  await sleep(600);
+  assert.strictEqual(await status(), 0, "playing");
   await page.keyboard.press(" ");
-  await until("play and pause", () => page.evaluate((s) => window.__state.clock.status === s, before));
+  await page.keyboard.press(" ");  // At once: the second undoes the first.
+  await sleep(600);
+  assert.strictEqual(await status(), 0, "still playing");
+  await page.keyboard.press(" ");
+  await sleep(600);
+  assert.strictEqual(await status(), 1, "paused");
   await page.close();
 });
 
@@ -168,6 +178,31 @@ test("wrong Host, Origin, token, sub-protocol, method and path are refused", asy
   assert.strictEqual(page.headers["access-control-allow-origin"], undefined);
 });
 
+test("garbage, half requests and oversized messages end their own connection only", async () => {
+  let seed = 20261130;
+  const random = () => (seed = (seed * 1103515245 + 12345) & 0x7fffffff) / 0x7fffffff;
+  const head = `GET /?t=${log.token} HTTP/1.1\r\nHost: 127.0.0.1:${log.port}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n` +
+    "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n";
+  for (let i = 0; i < 150; ++i) {
+    const socket = net.connect(log.port, "127.0.0.1");
+    socket.on("error", () => {});
+    const bytes = Buffer.from(Array.from({ length: 1 + Math.floor(300 * random()) }, () => Math.floor(256 * random())));
+    if (i % 3 === 0) socket.write(bytes);                                               // No HTTP.
+    else if (i % 3 === 1) socket.write(head.slice(0, Math.floor(head.length * random())));  // Half a request.
+    else { socket.write(head); socket.write(bytes); }                                  // No WebSocket frames.
+    await sleep(4);
+    socket.destroy();
+  }
+  const big = new WebSocket(log.foxglove, ["foxglove.sdk.v1"]);
+  await new Promise((resolve) => big.on("open", resolve));
+  big.on("error", () => {});
+  big.send("x".repeat(100000));
+  await new Promise((resolve) => big.on("close", resolve));
+  await until("connections free again", async () => {
+    try { return (await status({ path: "/health", headers: { Host: "127.0.0.1:" + log.port } })).statusCode === 200; } catch { return false; }
+  }, 12000);
+});
+
 test("two pages, a reload, and a client that reads nothing cost no memory", async () => {
   const one = await openPage(log.page), two = await openPage(log.page);
   await control(one, true, 1, 0.5);
@@ -193,17 +228,21 @@ test("live: SIGSTOP of the daemon turns the page grey in half a second, SIGCONT 
   const live = await startView();
   const drive = start("v2vouch-sim", "run", "left_turn", "--seed", "1", "--live");
   const page = await openPage(live.page);
-  await until("live picture", () => page.evaluate(() => document.getElementById("state").textContent.startsWith("live")), 15000);
+  await until("live picture", () => page.evaluate(() => document.getElementById("state").textContent.startsWith("live")), 30000);
   assert.ok(!(await page.evaluate(() => document.body.classList.contains("is-late"))));
+  // By the page's own clock: from the last list to grey.
+  await page.evaluate(() => {
+    new MutationObserver(() => {
+      if (document.body.classList.contains("is-late")) window.__greyAfter = performance.now() - window.__state.arrived;
+    }).observe(document.body, { attributes: true });
+  });
   daemon.kill("SIGSTOP");
-  const stopped = Date.now();
-  await until("grey", () => page.evaluate(() => document.body.classList.contains("is-late")), 3000);
-  const took = Date.now() - stopped;
-  console.log(`  grey after ${took} ms`);
-  assert.ok(took < 700, `grey after ${took} ms`);  // Half a second, and the test's own looking.
+  const took = await until("grey", () => page.evaluate(() => window.__greyAfter));
+  console.log(`  grey ${took.toFixed(0)} ms after the last list`);
+  assert.ok(took < 600, `${took} ms`);  // 500, and a busy machine.
   assert.match(await page.$eval("#late", (e) => e.textContent), /lists are \d\.\d s old/);
   daemon.kill("SIGCONT");
-  await until("colour again", () => page.evaluate(() => !document.body.classList.contains("is-late")), 5000);
+  await until("colour again", () => page.evaluate(() => !document.body.classList.contains("is-late")));
   drive.kill("SIGINT");
   await page.close();
 });

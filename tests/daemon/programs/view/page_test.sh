@@ -17,5 +17,5 @@ done
 "${root}/scripts/with_private_lcm" true 2>/dev/null || skip "no network namespace"
 scratch="$(mktemp -d)"
 trap 'rm -rf "${scratch}"' EXIT
-NODE_PATH="${modules}" HOME="${scratch}" timeout 90 \
+NODE_PATH="${modules}" HOME="${scratch}" timeout 170 \
   "${root}/scripts/with_private_lcm" node "${root}/tests/daemon/programs/view/page_test.js" "$1" "${scratch}"
