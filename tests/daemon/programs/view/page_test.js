@@ -224,10 +224,13 @@ test("two pages, a reload, and a client that reads nothing cost no memory", asyn
 });
 
 test("live: SIGSTOP of the daemon turns the page grey in half a second, SIGCONT brings it back", async () => {
+  const began = Date.now(), step = (what) => console.log(`  ${what} at ${Date.now() - began} ms`);
   const daemon = start("v2vouchd");
   const live = await startView();
   const drive = start("v2vouch-sim", "run", "left_turn", "--seed", "1", "--live");
+  step("drive started");
   const page = await openPage(live.page);
+  step("page ready");
   await until("live picture", () => page.evaluate(() => document.getElementById("state").textContent.startsWith("live")), 30000);
   assert.ok(!(await page.evaluate(() => document.body.classList.contains("is-late"))));
   // By the page's own clock: from the last list to grey.
@@ -241,8 +244,10 @@ test("live: SIGSTOP of the daemon turns the page grey in half a second, SIGCONT 
   console.log(`  grey ${took.toFixed(0)} ms after the last list`);
   assert.ok(took < 600, `${took} ms`);  // 500, and a busy machine.
   assert.match(await page.$eval("#late", (e) => e.textContent), /lists are \d\.\d s old/);
+  step("grey");
   daemon.kill("SIGCONT");
   await until("colour again", () => page.evaluate(() => !document.body.classList.contains("is-late")));
+  step("colour again");
   drive.kill("SIGINT");
   await page.close();
 });
@@ -260,6 +265,7 @@ async function main() {
   await first.close();
   let failed = 0;
   for (const [name, run] of tests) {
+    if (process.env.ONLY && !name.includes(process.env.ONLY)) continue;
     const began = Date.now();
     try {
       await run();
