@@ -21,6 +21,7 @@ SOURCE_ENDINGS = (".h", ".cc")
 LIBRARIES = {
     "eigen": r"Eigen/.*",
     "yaml": r"yaml-cpp/.*",
+    "boost": r"boost/.*",
     "lcm": r"lcm/.*",
     "lcmtypes": r"v2vouch/\w+_t\.hpp",
     "cli": r"CLI/.*",

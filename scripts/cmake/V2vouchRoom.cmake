@@ -53,7 +53,7 @@ endfunction()
 # come in, and those that index by them. Building everything instrumented takes too long for that.
 set(V2VOUCH_SANITIZED_ROOMS
   daemon/common/base daemon/common/assignment daemon/rim/config daemon/detector daemon/rim/io daemon/rim/net daemon/rim/lcm_packets daemon/obu daemon/local/radar daemon/local/camera
-  daemon/v2v/intake daemon/rim/wire daemon/rim/mcap daemon/rim/message_schema sim/import fuzz)
+  daemon/v2v/intake daemon/rim/wire daemon/rim/mcap daemon/rim/message_schema daemon/rim/view sim/import fuzz)
 # Those that start threads, for the thread sanitizer.
 set(V2VOUCH_THREADED_ROOMS daemon/programs/v2vouchd daemon/rim/io sim/campaign)
 foreach(kind sanitized threaded)

@@ -44,6 +44,10 @@ class LogReader {
 
   /// The next event, reusing `event`'s buffers. False at the end.
   bool Next(LogEvent& event);
+  /// Where in the file the next event is looked for.
+  [[nodiscard]] std::int64_t offset() const { return offset_; }
+  /// Goes on there: an offset() of before, or any other, from which the next event is found.
+  bool SeekTo(std::int64_t offset);
   /// Damaged stretches skipped so far.
   [[nodiscard]] std::int64_t damaged() const { return damaged_; }
   /// Share of the file read so far, 0..1, for progress.

@@ -114,6 +114,14 @@ void LogReader::SkipDamage() {
   } while (*At(0) != (kSyncWord >> 24) || !IsBelievable(0));
 }
 
+bool LogReader::SeekTo(std::int64_t offset) {
+  if (offset < 0 || offset > size_ || fseeko(file_, offset, SEEK_SET) != 0) return false;
+  window_.clear();
+  begin_ = 0;
+  offset_ = offset;
+  return true;
+}
+
 bool LogReader::Next(LogEvent& event) {
   while (offset_ < size_) {
     if (!IsBelievable(0)) {

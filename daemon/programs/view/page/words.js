@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers of the messages in plain words.
+"use strict";
+const Words = {
+  classes: ["unknown", "car", "van", "truck", "bus", "motorcycle", "pedestrian", "cyclist"],
+  visibility: ["in view", "hidden", "out of view"],
+  trust: ["no sender", "unknown", "candidate", "validated", "bridged", "suspect", "revoked"],
+  why: [
+    "",
+    "heard; nothing the sensors see agrees with it yet",
+    "agrees with what the sensors see, not for long enough yet",
+    "the sensors see its vehicle where it says it is",
+    "hidden now; it was validated before, so V2V carries it within its budget",
+    "not believed: it left what the sensors see, or contradicts itself",
+    "accused: not believed, reported as misbehaviour",
+  ],
+  sources: ["radar", "camera", "objects", "V2V"],
+  sector: ["watched", "degraded", "blind"],
+  number(value, decimals, unit) {
+    return value === null || value === undefined ? "none" : value.toFixed(decimals) + (unit ? " " + unit : "");
+  },
+  /** The last digits of an id: enough to tell vehicles apart. */
+  short(id) { return id.length > 5 ? id.slice(-5) : id; },
+};

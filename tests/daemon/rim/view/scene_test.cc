@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/rim/view/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "daemon/rim/view/json_text.h"
+#include "daemon/rim/view/page_frame.h"
+#include "daemon/rim/wire/codec.h"
+#include "tests/daemon/rim/view/view_messages.h"
+#include "v2vouch/text_t.hpp"
+
+namespace v2vouch::view {
+namespace {
+
+using nlohmann::json;
+using ::testing::ElementsAre;
+
+template <class T>
+bool Take(Scene& scene, const std::string& channel, const T& message, std::int64_t at = 1'000'000) {
+  std::vector<std::uint8_t> bytes;
+  wire::Encode(message, bytes);
+  return scene.Take(channel, bytes, FromMicros(at));
+}
+
+std::vector<std::string> Kinds(const Scene& scene) {
+  std::vector<std::string> kinds;
+  for (const ViewEvent& event : scene.events().events()) kinds.push_back(event.kind);
+  return kinds;
+}
+
+TEST(Scene, AFrameHoldsTheListsNumbersInTheOdometryFrame) {
+  Scene scene({}, {});
+  ASSERT_TRUE(Take(scene, "TRACKS_LOCAL", List(5'000'000, {Track(7, 40.0, -3.5)})));
+  const json frame = json::parse(PageFrame(scene));
+  EXPECT_EQ(frame["t"], 5'000'000);
+  ASSERT_EQ(frame["local"].size(), 1u);
+  EXPECT_EQ(frame["local"][0]["id"], "7");
+  EXPECT_EQ(frame["local"][0]["x"], 40.0);
+  EXPECT_EQ(frame["local"][0]["y"], -3.5);
+  EXPECT_TRUE(frame["priority"].empty());
+}
+
+TEST(Scene, IdsOf63BitsReachJavaScriptUnrounded) {
+  Scene scene({}, {});
+  Take(scene, "TRACKS_LOCAL", List(1, {Track(9007199254740993, 0.0, 0.0)}));
+  EXPECT_EQ(json::parse(PageFrame(scene))["local"][0]["id"], "9007199254740993");
+}
+
+TEST(Scene, OnlyTheNewestListIsKept) {
+  Scene scene({}, {});
+  Take(scene, "TRACKS_LOCAL", List(1, {Track(1, 0, 0), Track(2, 0, 0)}));
+  Take(scene, "TRACKS_LOCAL", List(2, {Track(3, 0, 0)}));
+  EXPECT_EQ(json::parse(PageFrame(scene))["local"].size(), 1u);
+}
+
+TEST(Scene, HostileBytesAndUnknownChannelsAreRefused) {
+  Scene scene({}, {});
+  const std::vector<std::uint8_t> bytes(100, 0xFF);
+  EXPECT_FALSE(scene.Take("TRACKS_LOCAL", bytes, FromMicros(1)));
+  EXPECT_FALSE(scene.Take("SOMETHING", bytes, FromMicros(1)));
+  EXPECT_EQ(scene.refused(), 1);
+  EXPECT_TRUE(json::accept(PageFrame(scene)));
+}
+
+TEST(Scene, FiguresThatAreNotFiniteBecomeNull) {
+  Scene scene({}, {});
+  track_t track = Track(1, NAN, INFINITY);
+  track.bridge_budget_s = NAN;
+  Take(scene, "TRACKS_PRIORITY", List(1, {track}));
+  const json frame = json::parse(PageFrame(scene));
+  EXPECT_TRUE(frame["priority"][0]["x"].is_null());
+  EXPECT_TRUE(frame["priority"][0]["budget"].is_null());
+}
+
+TEST(Scene, TextsOfOthersAreValidJsonWhateverTheyHold) {
+  for (const std::string text :
+       {"\xff\xfe", "a\"b\\c\n\x01", "\xc3\xa4", "\xed\xa0\x80", "\xf0\x9f"}) {
+    const std::string written = JsonText().Text(text).text();
+    EXPECT_TRUE(json::accept(written)) << written;
+  }
+}
+
+TEST(Scene, ALifeInPriorityIsToldAsEvents) {
+  Scene scene({}, {});
+  track_t track = Track(5, 30, 0);
+  track.local_id = 3;
+  Take(scene, "TRACKS_PRIORITY", List(1'000'000, {}), 1'000'000);
+  Take(scene, "TRACKS_PRIORITY", List(2'000'000, {track}), 2'000'000);
+  track.local_id = 0;
+  track.bridge_budget_s = 6.0;
+  Take(scene, "TRACKS_PRIORITY", List(3'000'000, {track}), 3'000'000);
+  track.local_id = 4;
+  Take(scene, "TRACKS_PRIORITY", List(7'300'000, {track}), 7'300'000);
+  Take(scene, "TRACKS_PRIORITY", List(8'000'000, {}), 8'000'000);
+  EXPECT_THAT(Kinds(scene), ElementsAre("validated", "bridged", "seen_again", "ended"));
+  EXPECT_NE(scene.events().events()[2].text.find("4.3 s"), std::string::npos);
+  EXPECT_EQ(scene.events().events()[1].at, 3'000'000);
+}
+
+TEST(Scene, AVerdictIsToldInPlainWordsWithItsFigures) {
+  Scene scene({}, {});
+  misbehavior_report_t report{};
+  report.sender_id[3] = 9;
+  report.check = "residual_drift";
+  report.verdict = misbehavior_report_t::ACCUSE;
+  report.num_evidence = 1;
+  report.evidence = {{"drift_m", 11.5}};
+  Take(scene, "MISBEHAVIOR", report);
+  EXPECT_THAT(Kinds(scene), ElementsAre("accused"));
+  ASSERT_NE(scene.VerdictsOf(9), nullptr);
+  const std::string& text = scene.VerdictsOf(9)->back().text;
+  EXPECT_NE(text.find("moves away"), std::string::npos) << text;
+  EXPECT_NE(text.find("drift_m 11.50"), std::string::npos) << text;
+}
+
+TEST(Scene, MemoryIsBoundedUnderAFloodOfVerdicts) {
+  Scene scene({}, {});
+  misbehavior_report_t report{};
+  report.check = "position_jump";
+  report.verdict = misbehavior_report_t::WITHDRAW;
+  for (int i = 0; i < 20000; ++i) {
+    report.sender_id[1] = static_cast<std::uint8_t>(i >> 16);
+    report.sender_id[2] = static_cast<std::uint8_t>(i >> 8);
+    report.sender_id[3] = static_cast<std::uint8_t>(i);
+    Take(scene, "MISBEHAVIOR", report);
+  }
+  EXPECT_EQ(scene.events().events().size(), 2000u);
+  EXPECT_EQ(scene.events().next_number(), 20000);
+}
+
+TEST(Scene, RadarPointsAreDrawnWhereTheMountingSays) {
+  VehicleConfig vehicle;
+  vehicle.radars.resize(1);
+  vehicle.radars[0] = {};
+  vehicle.radars[0].name = "REAR";
+  vehicle.radars[0].x_m = -1.0;
+  vehicle.radars[0].yaw_rad = std::numbers::pi;
+  Scene scene(vehicle, {});
+  track_list_t list = List(1'000'000, {});
+  list.ego_x_odom_m = 100.0;
+  Take(scene, "TRACKS_LOCAL", list);
+  radar_scan_t scan{};
+  scan.utime = 1'000'000;
+  scan.num_detections = 1;
+  scan.detections = {{10.0, 0.0, 2.0, NAN, NAN, -1}};
+  Take(scene, "RADAR_REAR", scan);
+  const json radar = json::parse(PageFrame(scene))["radar"];
+  ASSERT_EQ(radar.size(), 3u);
+  EXPECT_NEAR(radar[0].get<double>(), 89.0, 1e-6);
+  EXPECT_NEAR(radar[1].get<double>(), 0.0, 1e-6);
+}
+
+TEST(Scene, TruthLiesWhereTheEgoOfTheListsIs) {
+  Scene scene({}, {});
+  track_list_t list = List(1'000'000, {});
+  list.ego_x_odom_m = 10.0;
+  list.ego_yaw_odom_rad = 0.0;
+  Take(scene, "TRACKS_LOCAL", list);
+  truth_list_t truth{};
+  truth.utime = 1'000'000;
+  truth.ego_x_m = 500.0;
+  truth.ego_y_m = 200.0;
+  truth.ego_yaw_rad = std::numbers::pi / 2;
+  truth.num_objects = 1;
+  truth.objects.resize(1);
+  truth.objects[0].x_m = 500.0;
+  truth.objects[0].y_m = 230.0;  // 30 m ahead of an ego that drives north.
+  Take(scene, "TRUTH", truth);
+  const json object = json::parse(PageFrame(scene))["truth"][0];
+  EXPECT_NEAR(object["x"].get<double>(), 40.0, 1e-6);
+  EXPECT_NEAR(object["y"].get<double>(), 0.0, 1e-6);
+}
+
+TEST(RoadMap, LanesAndBuildingsComeOutOfAScenario) {
+  const RoadMap map = ReadRoadMap(R"(
+name: corner
+routes: [{name: a, waypoints: [{x_m: 0, y_m: 0}, {x_m: 50, y_m: 0, radius_m: 8}, {x_m: 50, y_m: 50}]}]
+buildings: [{x_m: 20, y_m: 20, length_m: 10, width_m: 6}]
+)");
+  ASSERT_EQ(map.lanes.size(), 1u);
+  EXPECT_GT(map.lanes[0].size(), 4u);  // A rounded corner.
+  ASSERT_EQ(map.buildings.size(), 1u);
+  EXPECT_EQ(map.buildings[0].size(), 4u);
+}
+
+TEST(RoadMap, OddTextsGiveAnEmptyMap) {
+  for (const char* text : {"", "[", "routes: 5", "routes: [{waypoints: [{x_m: .nan, y_m: 1e99}]}]",
+                           "buildings: [[]]", "a: &a [*a]"}) {
+    EXPECT_TRUE(ReadRoadMap(text).is_empty()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace v2vouch::view
