@@ -10,6 +10,7 @@
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/daemon_status_t.hpp"
+#include "v2vouch/ego_intent_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
@@ -20,6 +21,7 @@
 #include "v2vouch/track_list_t.hpp"
 #include "v2vouch/truth_bsm_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
+#include "v2vouch/warning_list_t.hpp"
 
 namespace v2vouch::wire {
 namespace {
@@ -34,8 +36,9 @@ std::vector<WireType> TableOf() {
 std::span<const WireType> ChannelTypes() {
   static const std::vector<WireType> table =
       TableOf<bsm_t, bsm_verdict_t, calibration_t, camera_detections_t, camera_image_t,
-              daemon_status_t, ego_motion_t, gnss_fix_t, misbehavior_report_t, object_list_t,
-              obu_status_t, radar_scan_t, text_t, track_list_t, truth_bsm_t, truth_list_t>();
+              daemon_status_t, ego_intent_t, ego_motion_t, gnss_fix_t, misbehavior_report_t,
+              object_list_t, obu_status_t, radar_scan_t, text_t, track_list_t, truth_bsm_t,
+              truth_list_t, warning_list_t>();
   return table;
 }
 
