@@ -21,7 +21,7 @@ const char* const kPrograms[] = {
     "v2vouchd",         "v2vouch-replay",        "v2vouch-sim",    "v2vouch-eval",
     "v2vouch-campaign", "v2vouch-calibrate",     "v2vouch-import", "v2vouch-detect",
     "v2vouch-annotate", "v2vouch-bench-tracker", "v2vouch-obu",    "v2vouch-baseline",
-    "v2vouch-sift",     "v2vouch-radio"};
+    "v2vouch-view",     "v2vouch-sift",          "v2vouch-radio"};
 
 class Programs : public ::testing::Test {
  protected:

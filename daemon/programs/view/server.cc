@@ -29,9 +29,10 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMostConnections = 32;
 constexpr std::size_t kMostClients = 8;
 constexpr std::uint32_t kHeaderLimit = 8192;
+constexpr std::size_t kReadBuffer = 16384;
 constexpr std::chrono::seconds kRequestTimeout{10};
 constexpr int kMessagesPerTick = 200;
-constexpr std::size_t kSendBuffer = 256 * 1024;  // What the kernel may hold of a slow client's.
+constexpr std::size_t kSendBuffer = 1u << 18;  // What the kernel may hold of a slow client's.
 
 // No script, style or connection but from this server; nobody may frame the page.
 constexpr std::string_view kPolicy =
@@ -72,8 +73,8 @@ struct Server::Impl {
       : hub(the_hub), rules(std::move(the_rules)) {}
 
   void Accept();
-  void Repeat(std::shared_ptr<asio::steady_timer> timer, std::chrono::milliseconds period,
-              std::shared_ptr<std::function<void()>> work);
+  void Repeat(const std::shared_ptr<asio::steady_timer>& timer, std::chrono::milliseconds period,
+              const std::shared_ptr<std::function<void()>>& work);
 
   view::Hub& hub;
   view::AccessRules rules;
@@ -291,7 +292,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Server::Impl& server_;
   Place place_;
   beast::tcp_stream stream_;
-  beast::flat_buffer buffer_{2 * kHeaderLimit};
+  beast::flat_buffer buffer_{kReadBuffer};
   std::optional<http::request_parser<http::empty_body>> parser_;
   Response response_;
 };
@@ -313,9 +314,9 @@ void Server::Impl::Accept() {
   });
 }
 
-void Server::Impl::Repeat(std::shared_ptr<asio::steady_timer> timer,
+void Server::Impl::Repeat(const std::shared_ptr<asio::steady_timer>& timer,
                           std::chrono::milliseconds period,
-                          std::shared_ptr<std::function<void()>> work) {
+                          const std::shared_ptr<std::function<void()>>& work) {
   timer->expires_after(period);
   timer->async_wait([=, this](error_code error) {
     if (error) return;

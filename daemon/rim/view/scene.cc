@@ -69,7 +69,8 @@ MapPoint FlatPose::ToOuter(double x_inner_m, double y_inner_m) const {
   return {x_m + c * x_inner_m - s * y_inner_m, y_m + s * x_inner_m + c * y_inner_m};
 }
 
-Scene::Scene(VehicleConfig vehicle, wire::ChannelNames names) : vehicle_(std::move(vehicle)) {
+Scene::Scene(VehicleConfig vehicle, const wire::ChannelNames& names)
+    : vehicle_(std::move(vehicle)) {
   radars_.resize(vehicle_.radars.size());
   objects_.resize(vehicle_.objects.size());
   boxes_.resize(vehicle_.cameras.size());

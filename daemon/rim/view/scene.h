@@ -55,7 +55,7 @@ struct SenderVerdict {
 /// clock, file or thread. Takes bytes that may be hostile; memory is bounded whatever comes.
 class Scene {
  public:
-  Scene(VehicleConfig vehicle, wire::ChannelNames names);
+  Scene(VehicleConfig vehicle, const wire::ChannelNames& names);
 
   /// @return false where the channel is none of ours or the message was refused.
   bool Take(std::string_view channel, std::span<const std::uint8_t> bytes, Timestamp received);

@@ -89,8 +89,8 @@ class Session {
   void Complain(const std::string& why);
   std::optional<Outgoing> NextOfPage();
   std::optional<Outgoing> NextOfFoxglove();
-  std::string ServerInfo() const;
-  std::string Advertise() const;
+  [[nodiscard]] std::string ServerInfo() const;
+  [[nodiscard]] std::string Advertise() const;
   std::optional<std::string> Clock();
   std::optional<std::string> StateOfPlayback();
 

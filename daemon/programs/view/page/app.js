@@ -239,7 +239,7 @@ function drawPictures() {
     const k = bitmap.width / (camera.w || head.w || bitmap.width);
     g.lineWidth = Math.max(2, bitmap.width / 400);
     g.strokeStyle = g.fillStyle = "#56b4e9";
-    g.font = Math.max(12, bitmap.width / 60) + "px system-ui, sans-serif";
+    g.font = Math.max(12, bitmap.width / 40) + "px system-ui, sans-serif";
     for (const [left, top, width, height, kind, score] of camera.boxes) {
       g.strokeRect(left * k, top * k, width * k, height * k);
       g.fillText(kind + (score ? " " + score.toFixed(2) : ""), left * k, top * k - 4);
