@@ -178,15 +178,17 @@ void BusCheck::CheckStrangers(AdviceList& findings) const {
   }
   for (const auto& [name, heard] : heard_) {
     if (decoder_.Find(name)) continue;
+    const std::string& type = heard.type;
     const bool is_input_type = std::ranges::any_of(
-        decoder_.channels(), [&](const auto& input) { return heard.type == TypeFor(input.kind); });
+        decoder_.channels(), [&type](const auto& input) { return type == TypeFor(input.kind); });
     const std::string meant = DidYouMean(name, silent);
     if (!is_input_type && meant.empty()) continue;
     if (name.ends_with(config_.lcm.channels.detected_suffix)) continue;  // Our own network's.
-    findings.push_back({State::kNote, "name",
-                        name + ": " + std::to_string(heard.count) + " messages (" +
-                            (heard.type.empty() ? "unknown type" : heard.type) +
-                            ") on a channel that no sensor of this vehicle has" + meant,
+    std::string what = name;
+    what.append(": ").append(std::to_string(heard.count)).append(" messages (");
+    what.append(type.empty() ? "unknown type" : type);
+    what.append(") on a channel that no sensor of this vehicle has").append(meant);
+    findings.push_back({State::kNote, "name", what,
                         "rename the channel where it is sent, or give the sensor this name in "
                         "vehicle.radars, cameras or objects"});
   }
