@@ -143,7 +143,15 @@ int main(int argc, char** argv) {
   int answers[2];
   if (pipe(orders) != 0 || pipe(answers) != 0) return 1;
   const pid_t child = fork();
-  if (child == 0) PublishAsTold(orders[0], answers[1], url, scale);
+  if (child == 0) {
+    // With its own copy of the end that orders are written to it would wait for more for ever.
+    close(orders[1]);
+    close(answers[0]);
+    PublishAsTold(orders[0], answers[1], url, scale);
+  }
+  if (child < 0) return 1;
+  close(orders[0]);
+  close(answers[1]);
 
   std::printf(
       "| messages | receiver | lost %% | p50 us | p99 us | processor us / message |\n"
