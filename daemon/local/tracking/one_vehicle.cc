@@ -42,6 +42,14 @@ bool IsSenior(const LocalTrack& a, const LocalTrack& b) {
   return a.id < b.id;
 }
 
+// Whether a place lies in a vehicle's box, made longer by `beyond_m` at either end.
+bool LiesIn(const LocalTrack& track, const Eigen::Vector2d& p_O, double beyond_m) {
+  const Eigen::Vector2d inside =
+      Eigen::Rotation2D<double>(-track.state_O.mean[kYaw]) * (p_O - track.state_O.mean.head<2>());
+  return std::abs(inside.x()) < 0.5 * track.extent.length_m + beyond_m &&
+         std::abs(inside.y()) < 0.5 * track.extent.width_m + kBorrowedAside_m;
+}
+
 }  // namespace
 
 // Two vehicles cannot stand in one place: of two tracks with overlapping footprints and one
@@ -75,15 +83,8 @@ void Tracker::DropDuplicates(double dt_s) {
 bool Tracker::IsInAnothersBox(std::size_t i, const Eigen::Vector2d& p_O) const {
   for (std::size_t j = 0; j < tracks_.size(); ++j) {
     if (j == i || !tracks_[j].is_confirmed || !hidden_[j].filter.is_vehicle()) continue;
-    const LocalTrack& other = tracks_[j];
-    const Eigen::Vector2d from = p_O - other.state_O.mean.head<2>();
-    if (from.squaredNorm() > kLongestVehicle_m * kLongestVehicle_m) continue;
-    const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-other.state_O.mean[kYaw]) * from;
-    const double beyond_m = std::min(other.extent.length_sigma_m, kMaxEndDoubt_m) + kInside_m;
-    if (std::abs(inside.x()) < 0.5 * other.extent.length_m + beyond_m &&
-        std::abs(inside.y()) < 0.5 * other.extent.width_m + kBorrowedAside_m) {
-      return true;
-    }
+    const double end_doubt_m = std::min(tracks_[j].extent.length_sigma_m, kMaxEndDoubt_m);
+    if (LiesIn(tracks_[j], p_O, end_doubt_m + kInside_m)) return true;
   }
   return false;
 }
@@ -96,14 +97,7 @@ bool Tracker::Borrows(std::size_t i, std::size_t j) const {
     return false;
   }
   if (!hidden_[j].filter.is_vehicle() || SeenAsTwo(j, i)) return false;
-  const auto lies_within = [this](const Eigen::Vector2d& p_O, std::size_t k) {
-    const LocalTrack& track = tracks_[k];
-    const Eigen::Vector2d inside =
-        Eigen::Rotation2D<double>(-track.state_O.mean[kYaw]) * (p_O - track.state_O.mean.head<2>());
-    return std::abs(inside.x()) < 0.5 * track.extent.length_m &&
-           std::abs(inside.y()) < 0.5 * track.extent.width_m + kBorrowedAside_m;
-  };
-  if (!lies_within(hidden_[i].reflection_O, j)) return false;
+  if (!LiesIn(owner, hidden_[i].reflection_O, 0.0)) return false;
   if (IsSenior(owner, tracks_[i])) return true;
   // The elder may stand behind, fed by what lies inside of the nearer one, whose face it lost.
   // Directions that no picture supports put ends anywhere.
@@ -125,7 +119,7 @@ bool Tracker::Borrows(std::size_t i, std::size_t j) const {
   const double needed_m = 0.5 * (owner.extent.length_m + tracks_[i].extent.length_m);
   if (std::abs(between.x()) > needed_m - kOverlap_m) return false;
   return is_fresh && difference < kPartSpeed_mps && distance_m(j) < distance_m(i) &&
-         !lies_within(hidden_[j].reflection_O, i) &&
+         !LiesIn(tracks_[i], hidden_[j].reflection_O, 0.0) &&
          !tracks_[i].support.SharesFrame(owner.support, SensorKind::kCamera);
 }
 

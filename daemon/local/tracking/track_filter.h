@@ -75,6 +75,7 @@ class TrackFilter {
   /// Its front and axis are those of its motion.
   [[nodiscard]] bool has_driven() const { return is_vehicle_ && vehicle_.has_driven(); }
   [[nodiscard]] bool knows_direction() const;  ///< Front and axis; whole poses need both.
+  [[nodiscard]] bool may_move_face() const { return is_vehicle_ && vehicle_.may_move_face(); }
   [[nodiscard]] Eigen::Vector2d seen_from_O() const { return seen_from_; }
   [[nodiscard]] Eigen::Vector2d position_O() const;
   [[nodiscard]] Eigen::Vector2d velocity_O() const;

@@ -328,13 +328,14 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (assigned_[i] < 0) continue;
     RadarMeasurement z = Given(i, joined_[i]);
-    z.may_be_anothers = IsInAnothersBox(i, candidates_[static_cast<std::size_t>(assigned_[i])].p_O);
+    const Candidate& given = candidates_[static_cast<std::size_t>(assigned_[i])];
+    z.may_be_anothers = hidden_[i].filter.may_move_face() && IsInAnothersBox(i, given.p_O);
     if (!hidden_[i].filter.Update(look, z, settings_)) {
       failures_.push_back(Reason::kTrackNumerics);
       hidden_[i].is_dead = true;
       continue;
     }
-    Hit(i, sensor, candidates_[static_cast<std::size_t>(assigned_[i])].is_echo);
+    Hit(i, sensor, given.is_echo);
     // A post in the vehicle's place would have been seen as well.
     Hidden& hidden = hidden_[i];
     if (z.is_static) {
@@ -344,7 +345,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
     }
     // A sensor that tracks by itself has sorted its mirror images out.
     if (z.is_object || detection_[i] >= kClearLook) ++hidden.clear_hits;
-    hidden.reflection_O = candidates_[static_cast<std::size_t>(assigned_[i])].p_O;
+    hidden.reflection_O = given.p_O;
     hidden.reflected = now_;
     NotePlace(i, look, hidden.reflection_O);
     hidden.has_range = true;

@@ -478,6 +478,11 @@ void VehicleFilter::NoteDepth(const RadarMeasurement&, const Linearized& model) 
   usual_depth_ += kDepthMemory * (depth - usual_depth_);
 }
 
+// One more scan takes the memory of the depth to kNearerSigmas at the earliest from here.
+bool VehicleFilter::may_move_face() const {
+  return (1.0 - kDepthMemory) * usual_depth_ - kDepthMemory * kMostDepth <= -kNearerSigmas;
+}
+
 bool VehicleFilter::IsBeforeFace(const RadarMeasurement& z, const Linearized& model) const {
   return !z.may_be_anothers && model.O.rows() > 0 && usual_depth_ < -kNearerSigmas &&
          model.y[0] < -kNearer_m;

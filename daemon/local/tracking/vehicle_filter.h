@@ -78,6 +78,9 @@ class VehicleFilter {
   /// Seen in motion: front and rear are told apart.
   [[nodiscard]] bool has_driven() const { return has_driven_; }
 
+  /// The next returns may set the near face anew (what they lie in is worth asking).
+  [[nodiscard]] bool may_move_face() const;
+
   /// The size has been forgotten once: no name of a class means anything to it any more.
   [[nodiscard]] bool is_size_open() const { return is_size_open_; }
   void AssumeClass(ObjectClass from, ObjectClass to, const Eigen::Vector2d& seen_from_O);

@@ -212,7 +212,7 @@ TEST(MergeLists, OneObjectPerVehicleAndOwnSensorsWinWhileTheySee) {
   EXPECT_EQ(MergeLists(&local, nullptr, kStart).size(), 2u);
 }
 
-// DESIGN's figure is below 5 ms; timed tests assert ratios only, so this prints.
+// A step with 50 tracks is to stay below 5 ms; timed tests assert ratios only, so this prints.
 TEST(Assess, FiftyTracksTakeLittleTime) {
   std::vector<Target> targets;
   for (int i = 0; i < 50; ++i) {
