@@ -74,21 +74,20 @@ struct CameraDetections : MessageHeader {
 struct ObjectBox {
   double x_m = 0.0;  ///< Of the footprint's centre.
   double y_m = 0.0;
-  double yaw_rad = 0.0;    ///< Of its axis, from the sensor's x axis, left positive.
-  bool has_yaw = true;     ///< False: unknown; yaw_rad says nothing.
-  bool has_front = false;  ///< The end that yaw points to is its front for sure.
+  double yaw_rad = 0.0;  ///< Of its axis, from the sensor's x axis, left positive.
   double length_m = 4.5;
   double width_m = 1.8;
-  bool has_size = true;                           ///< False: unknown; the sizes say nothing.
-  std::optional<Eigen::Vector2d> velocity_mps{};  ///< As the sensor's configuration says.
-  /// Variances and covariances of x, y [m^2]; diagonal 0: unknown, as configured. Likewise the
-  /// others.
+  double yaw_sigma_rad = 0.0;  ///< 0: unknown, as configured; likewise the covariances below.
+  double score = 0.0;          ///< 0..1.
+  std::int64_t id = -1;        ///< The sensor's own, of one object over time; -1: none.
+  /// Variances and covariances of x, y [m^2]; diagonal 0: unknown.
   Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();
-  double yaw_sigma_rad = 0.0;
   Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();
+  std::optional<Eigen::Vector2d> velocity_mps{};  ///< As the sensor's configuration says.
+  bool has_yaw = true;                            ///< False: unknown; yaw_rad says nothing.
+  bool has_front = false;  ///< The end that yaw points to is its front for sure.
+  bool has_size = true;    ///< False: unknown; the sizes say nothing.
   ObjectClass object_class = ObjectClass::kUnknown;
-  double score = 0.0;    ///< 0..1.
-  std::int64_t id = -1;  ///< The sensor's own, of one object over time; -1: none.
 };
 
 struct ObjectList : MessageHeader {

@@ -83,23 +83,23 @@ struct PoseMeasurement {
 struct BoxMeasurement {
   double x_m = 0.0;  ///< Of the footprint's centre.
   double y_m = 0.0;
-  double yaw_rad = 0.0;    ///< Of the axis; front and rear may be confused ...
-  bool has_front = false;  ///< ... unless the detector knows them apart.
+  double yaw_rad = 0.0;  ///< Of the axis; front and rear may be confused, but for has_front.
   double length_m = 4.0;
   double width_m = 1.7;
-  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Identity();  ///< [m^2], in O.
   double yaw_sigma_rad = 0.15;
   double length_sigma_m = 0.4;
   double width_sigma_m = 0.15;
-  std::optional<Eigen::Vector2d> velocity_O_mps{};                    ///< Over ground.
-  Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Identity();  ///< [m^2/s^2], in O.
   /// What the detector's score says: ln p(score | vehicle) / p(score | clutter); 0: nothing.
   double log_odds = 0.0;
-  ObjectClass object_class = ObjectClass::kUnknown;
   double score = 0.0;
-  int sensor = 0;  ///< Index into VehicleConfig::objects.
   /// Share of the vehicle that this frame could observe; as in RadarMeasurement.
   double visible_share = 1.0;
+  int sensor = 0;          ///< Index into VehicleConfig::objects.
+  bool has_front = false;  ///< The detector knows the vehicle's ends apart.
+  ObjectClass object_class = ObjectClass::kUnknown;
+  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Identity();  ///< [m^2], in O.
+  Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Identity();  ///< [m^2/s^2], in O.
+  std::optional<Eigen::Vector2d> velocity_O_mps{};                    ///< Over ground.
 };
 
 using SensorMeasurement = std::variant<RadarMeasurement, CameraMeasurement, BoxMeasurement>;
