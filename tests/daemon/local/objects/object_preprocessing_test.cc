@@ -57,10 +57,10 @@ TEST(ProcessObjects, AVelocityRelativeToTheSensorIsPutOverGround) {
   stand.ego.yaw_rate_radps = 0.2;
   const ObjectBox object{.x_m = 20.0,
                          .y_m = 3.0,
+                         .score = 0.9,
                          // In the sensor's axes: the car drives along the sensor's -y and turns to
                          // the left; the sensor sits 1 m ahead of the axle.
-                         .velocity_mps = Eigen::Vector2d(0.2 * (3.0 - 1.0), 10.0 - 0.2 * 20.0),
-                         .score = 0.9};
+                         .velocity_mps = Eigen::Vector2d(0.2 * (3.0 - 1.0), 10.0 - 0.2 * 20.0)};
   const auto boxes = stand.Process(object);
   ASSERT_EQ(boxes.size(), 1U);
   EXPECT_NEAR(boxes[0].velocity_O_mps->norm(), 0.0, 1e-9) << boxes[0].velocity_O_mps->transpose();
@@ -69,7 +69,7 @@ TEST(ProcessObjects, AVelocityRelativeToTheSensorIsPutOverGround) {
 TEST(ProcessObjects, WhatAnObjectDoesNotTellIsAsConfigured) {
   Stand stand;
   const auto boxes =
-      stand.Process({.x_m = 20.0, .has_yaw = false, .has_size = false, .score = 0.9});
+      stand.Process({.x_m = 20.0, .score = 0.9, .has_yaw = false, .has_size = false});
   ASSERT_EQ(boxes.size(), 1U);
   EXPECT_NEAR(boxes[0].position_covariance(0, 0), 0.09, 1e-12);
   EXPECT_FALSE(boxes[0].velocity_O_mps);
@@ -81,7 +81,7 @@ TEST(ProcessObjects, WhatAnObjectDoesNotTellIsAsConfigured) {
 
 TEST(ProcessObjects, AnAxisThatNobodyToldIsThatOfAFastVelocity) {
   Stand stand;
-  ObjectBox object{.x_m = 20.0, .has_yaw = false, .score = 0.9};
+  ObjectBox object{.x_m = 20.0, .score = 0.9, .has_yaw = false};
   object.velocity_mps = Eigen::Vector2d(0.0, 12.0);
   EXPECT_NEAR(stand.Process(object)[0].yaw_rad, -0.5 * kPi, 1e-12);
   object.velocity_mps = Eigen::Vector2d(0.0, 1.0);

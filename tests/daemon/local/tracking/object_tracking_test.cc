@@ -20,7 +20,7 @@ struct Stand {
     ego.stamp = FromMicros(1'700'000'000'000'000);
   }
   BoxMeasurement At(double x_m, double y_m, double speed_mps = kNaN) const {
-    BoxMeasurement z{.x_m = x_m, .y_m = y_m, .object_class = ObjectClass::kCar, .score = 0.9};
+    BoxMeasurement z{.x_m = x_m, .y_m = y_m, .score = 0.9, .object_class = ObjectClass::kCar};
     z.position_covariance = 0.04 * Eigen::Matrix2d::Identity();
     if (!std::isnan(speed_mps)) z.velocity_O_mps = Eigen::Vector2d(speed_mps, 0.0);
     z.velocity_covariance = 0.09 * Eigen::Matrix2d::Identity();
