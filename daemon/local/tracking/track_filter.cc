@@ -21,11 +21,6 @@ constexpr double kShownShare = 0.35;
 // What is hardly longer than wide loses nothing by a wrong direction.
 constexpr double kShownSmallShare = 0.5;
 constexpr double kSmall_m = 2.5;
-// A vehicle whose axis is a guess starts again from its point where that moves by so much in
-// another way, plus what the reflections slide along a body for each radian that the line of sight
-// turns, in lengths of the vehicle.
-constexpr double kOtherMotion_mps = 1.0;
-constexpr double kSlidePerTurn = 1.5;
 // A direction that was only assumed.
 constexpr double kAssumedYawSigma_rad = 0.7;
 // Young tracks are linearised twice: range rate bends strongly over an uncertain heading.
@@ -67,8 +62,11 @@ void TrackFilter::TakeStanding(const Fix& fix) {
 
 void TrackFilter::Predict(double dt_s, const FilterSettings& settings) {
   age_s_ += dt_s;
-  if (is_vehicle_) vehicle_.Predict(dt_s, settings);
-  if (!has_driven()) point_.Predict(dt_s);
+  if (is_vehicle_) {
+    vehicle_.Predict(dt_s, settings);
+  } else {
+    point_.Predict(dt_s);
+  }
 }
 
 template <class Look, class Measurement>
@@ -86,27 +84,7 @@ bool TrackFilter::Update(const Look& look, const Measurement& z, const FilterSet
     PromoteIfClear(settings);
     return true;
   }
-  if (!vehicle_.Update(look, z, age_s_ < kYoung_s, settings)) return false;
-  if (!has_driven()) FollowPoint(look, z, settings);
-  return true;
-}
-
-// A vehicle that was never seen moving has the axis that its silhouettes make likeliest. What moves
-// across the line of sight shows no Doppler, and moves across that axis as often as along it.
-template <class Look, class Measurement>
-void TrackFilter::FollowPoint(const Look& look, const Measurement& z,
-                              const FilterSettings& settings) {
-  if (!point_.Update(look, z, settings.point_targets)) return;
-  if (!point_.HasDirection(kDirectedSigma_rad, kDirectedShare)) return;
-  const Eigen::Vector2d sight = point_.position() - seen_from_;
-  const double ego_yaw_rad = look.ego.X_OB.yaw_rad();
-  const double turn_radps = std::abs(look.ego.speed_mps * (std::cos(ego_yaw_rad) * sight.y() -
-                                                           std::sin(ego_yaw_rad) * sight.x())) /
-                            std::max(sight.squaredNorm(), 1.0);
-  const Extent size = vehicle_.best().extent();
-  const double other_mps = kOtherMotion_mps + kSlidePerTurn * size.length_m * turn_radps;
-  if ((point_.velocity() - velocity_O()).norm() < other_mps) return;
-  vehicle_.StartMoving(point_, size, seen_from_, settings);
+  return vehicle_.Update(look, z, age_s_ < kYoung_s, settings);
 }
 
 void TrackFilter::PromoteIfClear(const FilterSettings& settings) {

@@ -83,13 +83,11 @@ class TrackFilter {
 
  private:
   void PromoteIfClear(const FilterSettings& settings);
-  template <class Look, class Measurement>
-  void FollowPoint(const Look& look, const Measurement& z, const FilterSettings& settings);
   [[nodiscard]] ExtendedState ShowPoint(const FilterSettings& settings) const;
 
   bool is_vehicle_ = false;
   double age_s_ = 0.0;
-  PointFilter point_;  // Of a vehicle too, until it is seen driving.
+  PointFilter point_;  // Until it is a vehicle.
   VehicleFilter vehicle_;
   Eigen::Vector2d seen_from_ = Eigen::Vector2d::Zero();  // Last sensor that saw it, in O.
   double default_yaw_rad_ = 0.0;
