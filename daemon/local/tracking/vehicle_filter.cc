@@ -22,9 +22,13 @@ constexpr double kEdgeGate = 4.0;
 // much costs it. What so many boxes or clusters say counts more than a name.
 constexpr double kOddBox = 9.0;
 const double kOddSizeCost = 2.0 * std::log(20.0);
+// Slower than this a vehicle hardly turns.
+constexpr double kTurning_mps = 1.0;
 constexpr int kLargerBoxes = 3;    // In a row: a vehicle that shows its whole flank,
 constexpr int kSmallerBoxes = 12;  // and one that is partly hidden, or badly boxed.
 constexpr int kOddSpans = 3;
+// Heading that a turn may gain on the filter, 1 sigma.
+constexpr double kOddTurn_rad = 0.3;
 // A cluster that is too wide may hold a part of the vehicle beside, which radars do not tell apart
 // well: such clusters must come more often than every fourth time. One that is too deep holds no
 // vehicle behind, which would be covered.
@@ -38,13 +42,13 @@ constexpr double kLengthShows = 0.3;
 // Memory of how deep the returns lie, per scan, and the most that one scan adds to it.
 constexpr double kDepthMemory = 0.1;
 constexpr double kMostDepth = 6.0;
-// Nothing of a vehicle lies before its near face: returns that lie nearer than it scan after scan,
-// by so many standard deviations and metres, say where it is.
-constexpr double kNearerSigmas = 2.0;
-constexpr double kNearer_m = 0.7;
+// Strong returns lie on the near face: where they lie before it, or behind, scan after scan, by so
+// many standard deviations and metres, they say where it is.
+constexpr double kOffSigmas = 2.0;
+constexpr double kOff_m = 0.7;
+// Behind the face of a longer vehicle they may come from anywhere under it.
+constexpr double kShallow_m = 7.0;
 constexpr double kFaceSigma_m = 0.4;
-// Slower than this a vehicle hardly turns.
-constexpr double kTurning_mps = 1.0;
 // Axes of a standing vehicle: most stand along the road or across it.
 constexpr std::array<double, VehicleFilter::kMostAxes> kAxisWeight = {0.4, 0.3, 0.15, 0.15};
 constexpr std::array<double, VehicleFilter::kMostAxes> kAxisTurn_rad = {0.0, kPi / 2, kPi / 4,
@@ -213,6 +217,10 @@ bool IsWider(const CameraLook& look, const CameraMeasurement& z, const ExtendedS
 }
 bool IsWider(const RadarLook&, const RadarMeasurement&, const ExtendedState&) { return true; }
 
+double CostOf(const Likelihood& likelihood) {
+  return likelihood.distance_squared + likelihood.log_det;
+}
+
 // The box as that of a vehicle of this motion and any size, where that explains it better.
 std::optional<Likelihood> EvaluateOddSize(const CameraLook& look, const CameraMeasurement& z,
                                           const Likelihood& named, const ExtendedState& state) {
@@ -224,9 +232,25 @@ std::optional<Likelihood> EvaluateOddSize(const CameraLook& look, const CameraMe
   auto likelihood = EvaluateExtended(*model, open);
   if (!likelihood) return std::nullopt;
   likelihood->log_det += kOddSizeCost;
-  const bool is_better =
-      likelihood->distance_squared + likelihood->log_det < named.distance_squared + named.log_det;
-  return is_better ? likelihood : std::nullopt;
+  return CostOf(*likelihood) < CostOf(named) ? likelihood : std::nullopt;
+}
+
+// A moving vehicle whose box is odd may have turned more than its returns told: the same, as likely
+// as a wrong size, with a heading that is open.
+ExtendedState Turned(const ExtendedState& state) {
+  ExtendedState turned = state;
+  turned.covariance(kYaw, kYaw) += kOddTurn_rad * kOddTurn_rad;
+  return turned;
+}
+std::optional<Likelihood> EvaluateOddTurn(const CameraLook& look, const CameraMeasurement& z,
+                                          const ExtendedState& state) {
+  if (std::abs(state.mean[kSpeed]) < kTurning_mps) return std::nullopt;
+  const ExtendedState turned = Turned(state);
+  const auto model = Linearize(turned, turned.assumed_extent(), look, z);
+  if (!model) return std::nullopt;
+  auto likelihood = EvaluateExtended(*model, turned);
+  if (likelihood) likelihood->log_det += kOddSizeCost;
+  return likelihood;
 }
 
 }  // namespace
@@ -389,17 +413,21 @@ std::optional<Likelihood> VehicleFilter::Evaluate(const Look& look, const Measur
   return best;
 }
 
-// Whether the likeliest component takes the measurement for one of a vehicle of another size.
+// What the likeliest component takes the measurement for.
 template <class Look, class Measurement>
-bool VehicleFilter::IsOdd(const Look& look, const Measurement& z,
-                          const FilterSettings& settings) const {
+VehicleFilter::Box VehicleFilter::Judge(const Look& look, const Measurement& z,
+                                        const FilterSettings& settings) const {
   if constexpr (kLearnsSize<Measurement>) {
-    if (settings.point_targets) return false;
+    if (settings.point_targets) return Box::kFits;
     const auto model = Linearize(best(), AssumedExtent(best(), settings), look, z);
     const auto named = model ? EvaluateExtended(*model, best()) : std::nullopt;
-    return named && EvaluateOddSize(look, z, *named, best());
+    if (!named) return Box::kFits;
+    const auto odd_size = EvaluateOddSize(look, z, *named, best());
+    if (!odd_size) return Box::kFits;
+    const auto odd_turn = EvaluateOddTurn(look, z, best());
+    return odd_turn && CostOf(*odd_turn) < CostOf(*odd_size) ? Box::kTurned : Box::kOtherSize;
   } else {
-    return false;
+    return Box::kFits;
   }
 }
 
@@ -415,7 +443,11 @@ void VehicleFilter::Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O) {
 template <class Look, class Measurement>
 bool VehicleFilter::Update(const Look& look, const Measurement& z, bool is_young,
                            const FilterSettings& settings) {
-  if (IsOdd(look, z, settings)) {
+  const Box box = Judge(look, z, settings);
+  if (box == Box::kTurned) {
+    for (std::size_t i = 0; i < count_; ++i) components_[i].state = Turned(components_[i].state);
+  }
+  if (box == Box::kOtherSize) {
     // One such box may show two vehicles as one.
     const bool is_larger = IsWider(look, z, best());
     if (++odd_boxes_ < (is_larger ? kLargerBoxes : kSmallerBoxes)) return true;
@@ -432,7 +464,7 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, bool is_young
     auto model = Linearize(component.state, AssumedExtent(component.state, settings), look, z);
     if (!model) continue;
     if (i == 0) NoteDepth(z, *model);
-    if (IsBeforeFace(z, *model)) {
+    if (IsOffFace(z, *model)) {
       FaceAt(-model->y[0], look.origin_O(), component.state);
       model = Linearize(component.state, AssumedExtent(component.state, settings), look, z);
       if (!model) continue;
@@ -480,12 +512,14 @@ void VehicleFilter::NoteDepth(const RadarMeasurement&, const Linearized& model) 
 
 // One more scan takes the memory of the depth to kNearerSigmas at the earliest from here.
 bool VehicleFilter::may_move_face() const {
-  return (1.0 - kDepthMemory) * usual_depth_ - kDepthMemory * kMostDepth <= -kNearerSigmas;
+  return (1.0 - kDepthMemory) * std::abs(usual_depth_) + kDepthMemory * kMostDepth >= kOffSigmas;
 }
 
-bool VehicleFilter::IsBeforeFace(const RadarMeasurement& z, const Linearized& model) const {
-  return !z.may_be_anothers && model.O.rows() > 0 && usual_depth_ < -kNearerSigmas &&
-         model.y[0] < -kNearer_m;
+bool VehicleFilter::IsOffFace(const RadarMeasurement& z, const Linearized& model) const {
+  return !z.may_be_anothers && model.O.rows() > 0 && std::abs(usual_depth_) > kOffSigmas &&
+         std::abs(model.y[0]) > kOff_m && (usual_depth_ > 0.0) == (model.y[0] > 0.0) &&
+         (usual_depth_ < 0.0 ||
+          (has_driven_ && best().mean[ExtendedState::kLength] < kShallow_m));
 }
 
 // New weights; drops the components that lost, and one of two that have come to agree.

@@ -99,12 +99,13 @@ class VehicleFilter {
     ExtendedState state;
     double weight = 1.0;
   };
+  enum class Box { kFits, kOtherSize, kTurned };
   template <class Look, class Measurement>
-  bool IsOdd(const Look& look, const Measurement& z, const FilterSettings& settings) const;
+  Box Judge(const Look& look, const Measurement& z, const FilterSettings& settings) const;
   void NoteDepth(const RadarMeasurement& z, const Linearized& model);
   void NoteDepth(const CameraMeasurement&, const Linearized&) {}
-  [[nodiscard]] bool IsBeforeFace(const RadarMeasurement& z, const Linearized& model) const;
-  [[nodiscard]] bool IsBeforeFace(const CameraMeasurement&, const Linearized&) const {
+  [[nodiscard]] bool IsOffFace(const RadarMeasurement& z, const Linearized& model) const;
+  [[nodiscard]] bool IsOffFace(const CameraMeasurement&, const Linearized&) const {
     return false;
   }
   void Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O);
