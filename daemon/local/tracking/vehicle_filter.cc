@@ -190,21 +190,14 @@ void FaceAt(double nearer_m, const Eigen::Vector2d& seen_from_O, ExtendedState& 
   const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
   const Eigen::Vector2d behind = forward.dot(u) > 0.0 ? forward : Eigen::Vector2d(-forward);
   state.mean.head<2>() -= nearer_m * u;
-  // Along the line of sight what was known of the place is void; across it stays.
-  auto& P = state.covariance;
-  const Eigen::Matrix2d across = Eigen::Matrix2d::Identity() - u * u.transpose();
-  const Eigen::Matrix<double, 2, ExtendedState::kSize> rows = across * P.topRows<2>();
-  const Eigen::Matrix2d kept = across * P.topLeftCorner<2, 2>() * across;
-  P.topRows<2>() = rows;
-  P.leftCols<2>() = rows.transpose();
-  const double along = std::abs(forward.dot(u));
-  const double length_variance = P(ExtendedState::kLength, ExtendedState::kLength);
-  const Eigen::Vector2d by_length = 0.5 * along * behind;
-  P.topLeftCorner<2, 2>() = kept + kFaceSigma_m * kFaceSigma_m * u * u.transpose() +
-                            length_variance * by_length * by_length.transpose();
-  const Eigen::Vector2d tie = length_variance * by_length;
-  P.block<2, 1>(0, ExtendedState::kLength) += tie;
-  P.block<1, 2>(ExtendedState::kLength, 0) += tie.transpose();
+  // Along the line of sight what was known of the place is void; across it stays. The centre is
+  // half a length behind the face: whatever the length turns out to be moves it.
+  ExtendedState::Matrix T = ExtendedState::Matrix::Identity();
+  T.topLeftCorner<2, 2>() -= u * u.transpose();
+  T.block<2, 1>(0, ExtendedState::kLength) = 0.5 * std::abs(forward.dot(u)) * behind;
+  ExtendedState::Matrix P = T.lazyProduct(state.covariance).lazyProduct(T.transpose());
+  P.topLeftCorner<2, 2>() += kFaceSigma_m * kFaceSigma_m * u * u.transpose();
+  state.covariance = 0.5 * (P + P.transpose());
 }
 
 // Whether a box is wider than this vehicle would show itself.
