@@ -31,6 +31,10 @@ constexpr double kAssignmentExistence = 0.05;
 // A track just outside of a sensor's view may still be seen by it.
 constexpr double kMinDetection = 0.02;
 constexpr double kSureExistence = 0.9999;
+// Most that one frame adds to a listed track's odds of existence. What reflects once shows again
+// and again (a wall's echo, a multipath ghost): a hit is no independent proof, and a track that is
+// met in one frame of four must go down.
+constexpr double kMostGain = 5.0;
 // Standard deviations of the coarse gate; the chi-square gate decides.
 constexpr double kCoarseSigmas = 4.7;
 // Detection probability of a frame in clear view, and of a picture that should show the vehicle.
@@ -225,7 +229,12 @@ void Tracker::Associate(std::size_t measurements) {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const double seen = marginals_.detected()[i];
     const double unseen = ExistenceAfterMiss(tracks_[i].existence, missing_[i]);
-    tracks_[i].existence = std::min(seen + (1.0 - seen) * unseen, kSureExistence);
+    double next = std::min(seen + (1.0 - seen) * unseen, kSureExistence);
+    if (tracks_[i].is_confirmed) {
+      const double odds = kMostGain * tracks_[i].existence / (1.0 - tracks_[i].existence);
+      next = std::min(next, odds / (1.0 + odds));
+    }
+    tracks_[i].existence = next;
   }
 }
 
