@@ -48,7 +48,8 @@ double ReachAlong(const LocalTrack& track) {
 
 }  // namespace
 
-RadarMeasurement JoinClusters(const RadarMeasurement& a, const RadarMeasurement& b) {
+RadarMeasurement JoinClusters(const RadarMeasurement& a, const RadarMeasurement& b,
+                              const Eigen::Vector2d& v_TA_R) {
   const double na = std::max(a.returns, 1);
   const double nb = std::max(b.returns, 1);
   const auto far = [](const RadarMeasurement& z) { return z.near_range_m + z.radial_extent_m; };
@@ -81,8 +82,13 @@ RadarMeasurement JoinClusters(const RadarMeasurement& a, const RadarMeasurement&
   out.middle_azimuth_rad =
       a.middle_azimuth_rad +
       middle_share * AngleDifference(b.middle_azimuth_rad, a.middle_azimuth_rad);
-  out.range_rate_mps = wa * a.range_rate_mps + wb * b.range_rate_mps;
   out.ground_range_rate_mps = wa * a.ground_range_rate_mps + wb * b.ground_range_rate_mps;
+  const auto expected = [&](double azimuth_rad) {
+    return v_TA_R.dot(Eigen::Vector2d(std::cos(azimuth_rad), std::sin(azimuth_rad)));
+  };
+  out.range_rate_mps = expected(out.azimuth_rad) +
+                       wa * (a.range_rate_mps - expected(a.azimuth_rad)) +
+                       wb * (b.range_rate_mps - expected(b.azimuth_rad));
   out.covariance = wa * wa * a.covariance + wb * wb * b.covariance;
   out.near_range_m = std::min(a.near_range_m, b.near_range_m);
   out.radial_extent_m = std::max(far(a), far(b)) - out.near_range_m;

@@ -332,7 +332,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
   Associate(measurements.size());
   AbsorbClusters(look, measurements);
   TakeFaces(look, measurements);
-  JoinOwned(measurements);
+  JoinOwned(look, measurements);
 
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (assigned_[i] < 0) continue;
@@ -411,7 +411,10 @@ void Tracker::StartFromRadar(const RadarLook& look, int radar,
 }
 
 // What each track was given, with the clusters that belong to it.
-void Tracker::JoinOwned(std::span<const RadarMeasurement> measurements) {
+void Tracker::JoinOwned(const RadarLook& look, std::span<const RadarMeasurement> measurements) {
+  const Eigen::Vector2d v_A_B = AntennaVelocity_B(look.ego, look.radar);
+  const Eigen::Matrix2d R_BO = look.ego.X_OB.rotation().transpose();
+  const Eigen::Rotation2Dd R_RB(-look.radar.yaw_rad);
   joined_.resize(tracks_.size());
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (assigned_[i] >= 0) joined_[i] = measurements[static_cast<std::size_t>(assigned_[i])];
@@ -420,7 +423,8 @@ void Tracker::JoinOwned(std::span<const RadarMeasurement> measurements) {
     if (owner_[j] < 0) continue;
     const auto owner = static_cast<std::size_t>(owner_[j]);
     if (owner >= tracks_.size() || assigned_[owner] < 0) continue;
-    joined_[owner] = JoinClusters(joined_[owner], measurements[j]);
+    const Eigen::Vector2d v_TA_R = R_RB * (R_BO * hidden_[owner].filter.velocity_O() - v_A_B);
+    joined_[owner] = JoinClusters(joined_[owner], measurements[j], v_TA_R);
   }
 }
 

@@ -277,7 +277,7 @@ class Tracker {
   void Vote(std::size_t track, ObjectClass object_class, double score);
   /// False when the table is full.
   bool Start(const TrackFilter& filter, SensorKey sensor, std::size_t index, double existence);
-  void JoinOwned(std::span<const RadarMeasurement> measurements);
+  void JoinOwned(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void DropDuplicates(double dt_s);
   [[nodiscard]] bool IsWithin(std::size_t i, std::size_t j) const;
   void JoinParts(double dt_s);
