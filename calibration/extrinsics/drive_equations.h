@@ -57,6 +57,10 @@ struct DriveEquations {
   void AddGnss();
   void AddGyroDrift(double heading_sigma);
   void AddTargets();
+  void AddRadarTarget(const TargetWindow& window, const TargetWindow::RadarLook& look,
+                      double* target);
+  void AddCameraTarget(const TargetWindow& window, const TargetWindow::CameraLook& look,
+                       double* target);
 
   const DriveData& data;
   MountingParameters& parameters;

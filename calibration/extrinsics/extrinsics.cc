@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "calibration/extrinsics/camera_aim.h"
 #include "calibration/extrinsics/information.h"
 #include "calibration/extrinsics/verdicts.h"
 
@@ -15,6 +16,8 @@ namespace v2vouch {
 namespace {
 
 constexpr double kMoving_mps = 3.0;
+constexpr std::size_t kLeastEgoSamples = 50;
+constexpr double kLeastShare = 0.01;  // Of an estimate's variance; less is not listed.
 // A group whose mean squared whitened residual is beyond these does not fit its model. Below: the
 // stated noise is far too large, which misleads no one but wastes information.
 constexpr double kMostChiSquare = 2.0;
@@ -160,6 +163,77 @@ std::map<std::string, double> InflationOf(const MountingInformation& information
   return inflation;
 }
 
+// Value, verdict and figures of parameter `i`, which takes the value that its verdict gives it.
+MountingEstimate EstimateOf(int i, const HeldPosterior& held, const HeldPosterior& bound,
+                            const MountingInformation& information,
+                            const std::vector<std::string>& groups, MountingParameters& parameters,
+                            const ExtrinsicsResult& result) {
+  const auto& d = parameters.descriptions()[static_cast<std::size_t>(i)];
+  MountingEstimate estimate;
+  estimate.name = d.name;
+  const double data_std = held.data_std(i) * information.std_factor(i);
+  double value = held.values[static_cast<std::size_t>(i)];
+  estimate.verdict = VerdictOf(parameters.values()[static_cast<std::size_t>(i)], data_std, d.prior,
+                               d.prior_std, Fits(d.sensor, result.groups));
+  if (d.is_anchor || d.is_considered) estimate.verdict = CalibrationVerdict::kPrior;
+  if (estimate.verdict == CalibrationVerdict::kPrior) value = d.prior;
+  parameters.values()[static_cast<std::size_t>(i)] = value;
+  estimate.value = value * d.to_unit;
+  estimate.prior = d.prior * d.to_unit;
+  estimate.prior_std = d.prior_std * d.to_unit;
+  estimate.std = std::sqrt(result.covariance(i, i)) * d.to_unit;
+  if (estimate.verdict == CalibrationVerdict::kPrior) estimate.std = estimate.prior_std;
+  estimate.crlb = bound.crlb(i) * d.to_unit;
+  estimate.data_std = data_std * d.to_unit;
+  estimate.determined_by = DeterminedBy(information, groups, i);
+  estimate.block_std = information.block_std(i) * d.to_unit;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const double share = information.shares(static_cast<Eigen::Index>(g), i);
+    if (share >= kLeastShare) estimate.shares.emplace_back(groups[g], share);
+  }
+  std::ranges::stable_sort(estimate.shares, std::greater{},
+                           &std::pair<std::string, double>::second);
+  estimate.hint = d.is_considered
+                      ? "vehicles are no points: only targets at known places could tell more"
+                      : HintFor(d.name, estimate.verdict, result.excitation);
+  return estimate;
+}
+
+// The figures of the groups and of every parameter, and whether the result is accepted.
+void Conclude(const MountingInformation& information, const MountingInformation& gaussian,
+              const std::vector<std::string>& groups, MountingParameters& parameters,
+              ExtrinsicsResult& result) {
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    result.groups.push_back(
+        {groups[g], information.fits[g].equations, information.fits[g].chi_square_per_equation,
+         gaussian.fits[g].robust_chi_square, information.inflation(static_cast<Eigen::Index>(g))});
+  }
+  const HeldPosterior held = HoldWeakDirections(information.S, information.doubts, parameters);
+  const HeldPosterior bound = HoldWeakDirections(gaussian.S, gaussian.doubts, parameters);
+  result.weak = held.weak;
+  const Eigen::VectorXd& factor = information.std_factor;
+  result.covariance = factor.asDiagonal() * held.covariance * factor.asDiagonal();
+  bool knows_something = false;
+  for (int i = 0; i < parameters.size(); ++i) {
+    MountingEstimate estimate = EstimateOf(i, held, bound, information, groups, parameters, result);
+    const auto& d = parameters.descriptions()[static_cast<std::size_t>(i)];
+    if (estimate.verdict == CalibrationVerdict::kAtBound) {
+      result.problems.push_back(d.name + " is farther from the vehicle file than 3 sigma of it");
+    } else if (estimate.verdict == CalibrationVerdict::kRejected) {
+      result.problems.push_back(d.name + ": the measurements of " + d.sensor +
+                                " do not fit the model");
+    } else if (estimate.verdict != CalibrationVerdict::kPrior) {
+      knows_something = true;
+    }
+    result.parameters.push_back(std::move(estimate));
+  }
+  if (!knows_something) {
+    result.problems.push_back("nothing could be estimated: every parameter stays at its prior");
+  }
+  result.mounting = parameters;
+  result.accepted = result.problems.empty();
+}
+
 }  // namespace
 
 ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& vehicle,
@@ -171,7 +245,7 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
   MountingParameters parameters(vehicle, options.priors, options.point_targets);
   ExtrinsicsResult result(parameters);
   const EgoTrack ego(log.motion);
-  if (ego.samples().size() < 50) {
+  if (ego.samples().size() < kLeastEgoSamples) {
     result.problems.push_back("no EGO_MOTION to calibrate from: under 50 samples");
     return result;
   }
@@ -212,62 +286,7 @@ ExtrinsicsResult CalibrateExtrinsics(const DriveLog& log, const VehicleConfig& v
     result.problems.push_back("the equations have no unique solution");
     return result;
   }
-  for (std::size_t g = 0; g < problem->groups().size(); ++g) {
-    result.groups.push_back({problem->groups()[g], information.fits[g].equations,
-                             information.fits[g].chi_square_per_equation,
-                             gaussian.fits[g].robust_chi_square,
-                             information.inflation(static_cast<Eigen::Index>(g))});
-  }
-  const HeldPosterior held = HoldWeakDirections(information.S, information.doubts, parameters);
-  const HeldPosterior bound = HoldWeakDirections(gaussian.S, gaussian.doubts, parameters);
-  result.weak = held.weak;
-  const Eigen::VectorXd& factor = information.std_factor;
-  result.covariance = factor.asDiagonal() * held.covariance * factor.asDiagonal();
-  bool knows_something = false;
-  for (int i = 0; i < parameters.size(); ++i) {
-    const auto& d = parameters.descriptions()[static_cast<std::size_t>(i)];
-    MountingEstimate estimate;
-    estimate.name = d.name;
-    const double data_std = held.data_std(i) * factor(i);
-    double value = held.values[static_cast<std::size_t>(i)];
-    estimate.verdict = VerdictOf(parameters.values()[static_cast<std::size_t>(i)], data_std,
-                                 d.prior, d.prior_std, Fits(d.sensor, result.groups));
-    if (d.is_anchor || d.is_considered) estimate.verdict = CalibrationVerdict::kPrior;
-    if (estimate.verdict == CalibrationVerdict::kPrior) value = d.prior;
-    parameters.values()[static_cast<std::size_t>(i)] = value;
-    estimate.value = value * d.to_unit;
-    estimate.prior = d.prior * d.to_unit;
-    estimate.prior_std = d.prior_std * d.to_unit;
-    estimate.std = std::sqrt(result.covariance(i, i)) * d.to_unit;
-    if (estimate.verdict == CalibrationVerdict::kPrior) estimate.std = estimate.prior_std;
-    estimate.crlb = bound.crlb(i) * d.to_unit;
-    estimate.data_std = data_std * d.to_unit;
-    estimate.determined_by = DeterminedBy(information, problem->groups(), i);
-    estimate.block_std = information.block_std(i) * d.to_unit;
-    for (std::size_t g = 0; g < problem->groups().size(); ++g) {
-      const double share = information.shares(static_cast<Eigen::Index>(g), i);
-      if (share >= 0.01) estimate.shares.emplace_back(problem->groups()[g], share);
-    }
-    std::ranges::stable_sort(estimate.shares, std::greater{},
-                             &std::pair<std::string, double>::second);
-    estimate.hint = d.is_considered
-                        ? "vehicles are no points: only targets at known places could tell more"
-                        : HintFor(d.name, estimate.verdict, result.excitation);
-    if (estimate.verdict == CalibrationVerdict::kAtBound) {
-      result.problems.push_back(d.name + " is farther from the vehicle file than 3 sigma of it");
-    } else if (estimate.verdict == CalibrationVerdict::kRejected) {
-      result.problems.push_back(d.name + ": the measurements of " + d.sensor +
-                                " do not fit the model");
-    } else if (estimate.verdict != CalibrationVerdict::kPrior) {
-      knows_something = true;
-    }
-    result.parameters.push_back(std::move(estimate));
-  }
-  if (!knows_something) {
-    result.problems.push_back("nothing could be estimated: every parameter stays at its prior");
-  }
-  result.mounting = parameters;
-  result.accepted = result.problems.empty();
+  Conclude(information, gaussian, problem->groups(), parameters, result);
   tell(1.0, "done");
   return result;
 }

@@ -13,6 +13,7 @@ namespace v2vouch {
 namespace {
 
 constexpr Eigen::Index kJackknifeBlocks = 20;
+// Lengths of the blocks in which correlated noise is looked for.
 constexpr std::array<double, 4> kBlocks_s = {2.0, 5.0, 10.0, 30.0};
 
 double RobustSquare(std::vector<double> residuals) {
@@ -53,21 +54,23 @@ double Inflation(const std::vector<double>& times_s, const std::vector<double>& 
   return most;
 }
 
-}  // namespace
+// H = J'J without the mounting's priors; p the parameters, t everything else.
+struct NormalEquations {
+  Eigen::MatrixXd Hpp, Htp;
+  Eigen::SparseMatrix<double> Htt;  // Its lower half.
+};
 
-MountingInformation Reduce(const DriveProblem& problem, const MountingParameters& parameters,
-                           bool with_loss) {
-  const DriveProblem::Linear linear = problem.Linearised(with_loss);
+NormalEquations NormalEquationsOf(const DriveProblem::Linear& linear, int first_row,
+                                  const MountingParameters& parameters) {
   const int np = parameters.size();
   const int nt = linear.unknowns - np;
   const auto rows = static_cast<int>(linear.residuals.size());
-  const int first = problem.prior_equations();
-
-  // J_t sparse, J_p row by row.
+  NormalEquations normal{.Hpp = Eigen::MatrixXd::Zero(np, np),
+                         .Htp = Eigen::MatrixXd::Zero(nt, np),
+                         .Htt = Eigen::SparseMatrix<double>(nt, nt)};
   std::vector<Eigen::Triplet<double>> triplets;
-  Eigen::MatrixXd Hpp = Eigen::MatrixXd::Zero(np, np);
   std::vector<Eigen::Triplet<double>> cross;
-  for (int row = first; row < rows; ++row) {
+  for (int row = first_row; row < rows; ++row) {
     const int begin = linear.row_begin[static_cast<std::size_t>(row)];
     const int end = linear.row_begin[static_cast<std::size_t>(row) + 1];
     for (int i = begin; i < end; ++i) {
@@ -78,7 +81,7 @@ MountingInformation Reduce(const DriveProblem& problem, const MountingParameters
         const int ck = linear.columns[static_cast<std::size_t>(k)];
         const double v = vi * linear.values[static_cast<std::size_t>(k)];
         if (ci < np && ck < np) {
-          Hpp(ci, ck) += v;
+          normal.Hpp(ci, ck) += v;
         } else if (ci >= np && ck >= np) {
           if (ck <= ci) triplets.emplace_back(ci - np, ck - np, v);
         } else if (ci >= np && ck < np) {
@@ -87,46 +90,37 @@ MountingInformation Reduce(const DriveProblem& problem, const MountingParameters
       }
     }
   }
-  Eigen::SparseMatrix<double> Htt(nt, nt);
-  Htt.setFromTriplets(triplets.begin(), triplets.end());
-  Eigen::MatrixXd Htp = Eigen::MatrixXd::Zero(nt, np);
-  for (const auto& t : cross) Htp(t.row(), t.col()) += t.value();
+  normal.Htt.setFromTriplets(triplets.begin(), triplets.end());
+  for (const auto& t : cross) normal.Htp(t.row(), t.col()) += t.value();
+  return normal;
+}
 
-  MountingInformation information;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(Htt);
-  if (solver.info() != Eigen::Success) return information;
-  const Eigen::MatrixXd G = solver.solve(Htp);  // H_tt^-1 H_tp
-  if (!G.allFinite()) return information;
-  information.S = Hpp - Htp.transpose() * G;
-  information.S = 0.5 * (information.S + information.S.transpose()).eval();
-
-  // The row of G is its own variance times what it and the parameters have in common.
-  const auto considered = problem.considered();
-  information.doubts.resize(np, static_cast<Eigen::Index>(considered.size()));
-  for (std::size_t i = 0; i < considered.size(); ++i) {
-    const auto& one = considered[i];
-    information.doubts.col(static_cast<Eigen::Index>(i)) =
-        G.row(one.column - np).transpose() * (one.sigma / (one.held_sigma * one.held_sigma));
-  }
-
-  // Influence of every equation on the estimate: X' J' r, X = [I; -G] (S + priors)^-1.
-  Eigen::VectorXd prior(np);
-  for (int i = 0; i < np; ++i) {
+Eigen::MatrixXd CovarianceWithPriors(const Eigen::MatrixXd& S,
+                                     const MountingParameters& parameters) {
+  Eigen::VectorXd prior(parameters.size());
+  for (int i = 0; i < parameters.size(); ++i) {
     const double s = parameters.descriptions()[static_cast<std::size_t>(i)].equation_std();
     prior(i) = 1.0 / (s * s);
   }
-  const Eigen::MatrixXd C = (information.S + prior.asDiagonal().toDenseMatrix()).inverse();
+  return (S + prior.asDiagonal().toDenseMatrix()).inverse();
+}
+
+// Influence of every equation on the estimate: X' J' r, X = [I; -G] C, C = (S + priors)^-1. By
+// group: shares (not yet normalised); by block of the drive: block_std.
+void AddInfluence(const DriveProblem& problem, const DriveProblem::Linear& linear,
+                  const Eigen::MatrixXd& C, const Eigen::MatrixXd& G,
+                  MountingInformation& information) {
+  const Eigen::Index np = C.rows();
   const Eigen::MatrixXd GC = G * C;
-  const auto groups = problem.groups().size();
-  information.shares = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(groups), np);
-  std::vector<std::vector<double>> times(groups), residuals(groups);
+  information.shares =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(problem.groups().size()), np);
   Eigen::RowVectorXd w(np);
   Eigen::MatrixXd block_pull = Eigen::MatrixXd::Zero(kJackknifeBlocks, np);
   double last_s = 0.0;
   for (const Equation& equation : problem.equations()) last_s = std::max(last_s, equation.time_s);
+  const auto rows = static_cast<int>(linear.residuals.size());
   for (int row = 0; row < rows; ++row) {
     const Equation& equation = problem.equations()[static_cast<std::size_t>(row)];
-    const auto group = static_cast<std::size_t>(equation.group);
     w.setZero();
     for (int i = linear.row_begin[static_cast<std::size_t>(row)];
          i < linear.row_begin[static_cast<std::size_t>(row) + 1]; ++i) {
@@ -140,14 +134,27 @@ MountingInformation Reduce(const DriveProblem& problem, const MountingParameters
       }
     }
     information.shares.row(equation.group) += w.cwiseProduct(w);
-    if (row >= first && last_s > 0.0) {
+    if (row >= problem.prior_equations() && last_s > 0.0) {
       const auto block = std::min<Eigen::Index>(
           kJackknifeBlocks - 1,
           static_cast<Eigen::Index>(kJackknifeBlocks * equation.time_s / last_s));
       block_pull.row(block) += linear.residuals[static_cast<std::size_t>(row)] * w;
     }
-    times[group].push_back(equation.time_s);
-    residuals[group].push_back(linear.residuals[static_cast<std::size_t>(row)]);
+  }
+  const Eigen::MatrixXd centred = block_pull.rowwise() - block_pull.colwise().mean();
+  information.block_std =
+      centred.colwise().norm().transpose() * std::sqrt(kJackknifeBlocks / (kJackknifeBlocks - 1.0));
+}
+
+// How well each group of equations fits, and how correlated its residuals are.
+void AddFits(const DriveProblem& problem, const DriveProblem::Linear& linear,
+             MountingInformation& information) {
+  const std::size_t groups = problem.groups().size();
+  std::vector<std::vector<double>> times(groups), residuals(groups);
+  for (std::size_t row = 0; row < linear.residuals.size(); ++row) {
+    const Equation& equation = problem.equations()[row];
+    times[static_cast<std::size_t>(equation.group)].push_back(equation.time_s);
+    residuals[static_cast<std::size_t>(equation.group)].push_back(linear.residuals[row]);
   }
   information.inflation = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(groups));
   for (std::size_t g = 0; g < groups; ++g) {
@@ -160,15 +167,18 @@ MountingInformation Reduce(const DriveProblem& problem, const MountingParameters
       information.inflation(static_cast<Eigen::Index>(g)) = Inflation(times[g], residuals[g]);
     }
   }
-  Eigen::VectorXd beyond = information.inflation;  // What the weights do not hold yet.
+}
+
+// Grows each standard deviation by the correlation that the weights do not hold yet, and
+// normalises the shares.
+void AddStdFactor(const DriveProblem& problem, MountingInformation& information) {
+  Eigen::VectorXd beyond = information.inflation;
   for (Eigen::Index g = 0; g < beyond.size(); ++g) {
     beyond(g) = std::max(1.0, beyond(g) / problem.weighed_inflation(static_cast<int>(g)));
   }
-  const Eigen::MatrixXd centred = block_pull.rowwise() - block_pull.colwise().mean();
-  information.block_std =
-      centred.colwise().norm().transpose() * std::sqrt(kJackknifeBlocks / (kJackknifeBlocks - 1.0));
+  const Eigen::Index np = information.shares.cols();
   information.std_factor = Eigen::VectorXd::Ones(np);
-  for (int i = 0; i < np; ++i) {
+  for (Eigen::Index i = 0; i < np; ++i) {
     const double white = information.shares.col(i).sum();
     const double grown = information.shares.col(i).dot(beyond);
     if (white > 0.0) {
@@ -176,6 +186,34 @@ MountingInformation Reduce(const DriveProblem& problem, const MountingParameters
       information.shares.col(i) /= white;
     }
   }
+}
+
+}  // namespace
+
+MountingInformation Reduce(const DriveProblem& problem, const MountingParameters& parameters,
+                           bool with_loss) {
+  const DriveProblem::Linear linear = problem.Linearised(with_loss);
+  const NormalEquations normal = NormalEquationsOf(linear, problem.prior_equations(), parameters);
+  MountingInformation information;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(normal.Htt);
+  if (solver.info() != Eigen::Success) return information;
+  const Eigen::MatrixXd G = solver.solve(normal.Htp);  // H_tt^-1 H_tp
+  if (!G.allFinite()) return information;
+  information.S = normal.Hpp - normal.Htp.transpose() * G;
+  information.S = 0.5 * (information.S + information.S.transpose()).eval();
+
+  // The row of G is its own variance times what it and the parameters have in common.
+  const auto considered = problem.considered();
+  information.doubts.resize(parameters.size(), static_cast<Eigen::Index>(considered.size()));
+  for (std::size_t i = 0; i < considered.size(); ++i) {
+    const auto& one = considered[i];
+    information.doubts.col(static_cast<Eigen::Index>(i)) =
+        G.row(one.column - parameters.size()).transpose() *
+        (one.sigma / (one.held_sigma * one.held_sigma));
+  }
+  AddInfluence(problem, linear, CovarianceWithPriors(information.S, parameters), G, information);
+  AddFits(problem, linear, information);
+  AddStdFactor(problem, information);
   return information;
 }
 

@@ -37,12 +37,9 @@ std::vector<ResidualPictures::Bin> Bins(const Histogram& histogram, double width
   return bins;
 }
 
-}  // namespace
-
-ResidualPictures DrawResiduals(const DriveData& data, const DriveProblem& problem,
-                               const MountingParameters& parameters) {
+// Per radar: range rate of stationary returns against what the ego's motion predicts, by azimuth.
+std::vector<Histogram> DopplerOf(const DriveData& data, const MountingParameters& parameters) {
   std::vector<Histogram> doppler(data.vehicle->radars.size());
-  std::vector<Histogram> range(data.vehicle->radars.size());
   for (const StaticReturn& one : data.returns) {
     const EgoTrack::Sample& sample = data.ego->samples()[one.epoch];
     const auto [speed, omega] = MotionAt(sample, parameters.Ego());
@@ -54,36 +51,41 @@ ResidualPictures DrawResiduals(const DriveData& data, const DriveProblem& proble
     Put(doppler[static_cast<std::size_t>(one.radar)], ToDegrees(one.azimuth_rad), kAzimuthBin_deg,
         off);
   }
-  ResidualPictures pictures;
-  std::size_t looks = 0;
-  for (const TargetWindow& window : data.windows) looks += window.camera_looks.size();
-  const std::size_t step = 1 + looks / kMostPixels;
-  for (int camera = 0; camera < parameters.cameras(); ++camera) {
-    const CameraConfig& config = data.vehicle->cameras[static_cast<std::size_t>(camera)];
-    pictures.cameras.push_back(
-        {parameters.descriptions()[static_cast<std::size_t>(parameters.CameraAt(camera))].sensor,
-         config.image_width_px,
-         config.image_height_px,
-         {}});
-  }
-  std::size_t n = 0;
+  return doppler;
+}
+
+// Per radar: range of moving vehicles against their solved positions, by range.
+std::vector<Histogram> RangesOf(const DriveData& data, const DriveProblem& problem,
+                                const MountingParameters& parameters) {
+  std::vector<Histogram> range(data.vehicle->radars.size());
   for (std::size_t i = 0; i < data.windows.size(); ++i) {
-    const double* target = problem.targets()[i].data();
     for (const auto& look : data.windows[i].radar_looks) {
       double x = 0.0;
       double y = 0.0;
-      PlaceInLook(target, look.pose, x, y);
+      PlaceInLook(problem.targets()[i].data(), look.pose, x, y);
       const double* radar = parameters.Radar(look.radar);
       Put(range[static_cast<std::size_t>(look.radar)], look.range_m, kRangeBin_m,
           look.range_m - std::hypot(x - radar[0], y - radar[1]));
     }
+  }
+  return range;
+}
+
+// Feet of boxes against the solved positions; thinned to what a picture can hold.
+void AddPixels(const DriveData& data, const DriveProblem& problem,
+               const MountingParameters& parameters, ResidualPictures& pictures) {
+  std::size_t looks = 0;
+  for (const TargetWindow& window : data.windows) looks += window.camera_looks.size();
+  const std::size_t step = 1 + looks / kMostPixels;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < data.windows.size(); ++i) {
     for (const auto& look : data.windows[i].camera_looks) {
       if (n++ % step != 0) continue;
       double x = 0.0;
       double y = 0.0;
       double u = 0.0;
       double v = 0.0;
-      PlaceInLook(target, look.pose, x, y);
+      PlaceInLook(problem.targets()[i].data(), look.pose, x, y);
       if (!ProjectGround(data.vehicle->cameras[static_cast<std::size_t>(look.camera)],
                          parameters.Camera(look.camera), x, y, 0.0, u, v)) {
         continue;
@@ -92,6 +94,24 @@ ResidualPictures DrawResiduals(const DriveData& data, const DriveProblem& proble
           {look.u_px, look.v_px, look.u_px - u, look.v_px - v});
     }
   }
+}
+
+}  // namespace
+
+ResidualPictures DrawResiduals(const DriveData& data, const DriveProblem& problem,
+                               const MountingParameters& parameters) {
+  const std::vector<Histogram> doppler = DopplerOf(data, parameters);
+  const std::vector<Histogram> range = RangesOf(data, problem, parameters);
+  ResidualPictures pictures;
+  for (int camera = 0; camera < parameters.cameras(); ++camera) {
+    const CameraConfig& config = data.vehicle->cameras[static_cast<std::size_t>(camera)];
+    pictures.cameras.push_back(
+        {parameters.descriptions()[static_cast<std::size_t>(parameters.CameraAt(camera))].sensor,
+         config.image_width_px,
+         config.image_height_px,
+         {}});
+  }
+  AddPixels(data, problem, parameters, pictures);
   for (int radar = 0; radar < parameters.radars(); ++radar) {
     const auto k = static_cast<std::size_t>(radar);
     pictures.radars.push_back(

@@ -25,66 +25,73 @@ void DriveEquations::AddTargets() {
     auto& target = targets[i];
     std::copy(std::begin(window.state), std::end(window.state), target.begin());
     blocks.push_back(target.data());
-    const double time_s = SecondsOf(window.middle);
-    for (const auto& look : window.radar_looks) {
-      const RadarConfig& radar = data.vehicle->radars[static_cast<std::size_t>(look.radar)];
-      const int range_group = Group(RadarName(look.radar) + ".target_range");
-      const int azimuth_group = Group(RadarName(look.radar) + ".target_azimuth");
-      const double across_m = options.wander_m;
-      const Aspect aspect = AspectOf(window, look.pose);
-      const RadarTargetCost range{.pose = look.pose,
-                                  .measured = look.range_m,
-                                  .sigma = std::hypot(radar.range_sigma_m, across_m),
-                                  .is_azimuth = false,
-                                  .aspect = aspect,
-                                  .range_m = look.range_m,
-                                  .sin_azimuth = std::sin(look.azimuth_rad),
-                                  .radar_x_m = parameters.Radar(look.radar)[0],
-                                  .radar_y_m = parameters.Radar(look.radar)[1]};
-      RadarTargetCost azimuth = range;
-      azimuth.measured = look.azimuth_rad;
-      azimuth.sigma = std::hypot(radar.azimuth_sigma_rad, across_m / std::max(1.0, look.range_m));
-      azimuth.is_azimuth = true;
-      constexpr int kR = MountingParameters::kPerRadar;
-      if (options.offset_m <= 0.0) {
-        Add(AutoDiff<RadarTargetCost, kR, 4>(range), &cauchy, range_group, time_s,
-            parameters.Radar(look.radar), target.data());
-        Add(AutoDiff<RadarTargetCost, kR, 4>(azimuth), &cauchy, azimuth_group, time_s,
-            parameters.Radar(look.radar), target.data());
-        continue;
-      }
-      auto& offset = offsets[look.chain];
-      if (!offset) {
-        offset = {0.0, 0.0};
-        blocks.push_back(offset->data());
-        for (int k = 0; k < 2; ++k) {
-          Add(AutoDiff<PriorCost, 2>({k, 0.0, options.offset_m}), nullptr,
-              k == 0 ? range_group : azimuth_group, time_s, offset->data());
-        }
-      }
-      double* const of_all = Shape(time_s);
-      double* const of_radar = Lean(look.radar, time_s);
-      Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape, kLean>(range), &cauchy, range_group, time_s,
-          parameters.Radar(look.radar), target.data(), offset->data(), of_all, of_radar);
-      Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape, kLean>(azimuth), &cauchy, azimuth_group,
-          time_s, parameters.Radar(look.radar), target.data(), offset->data(), of_all, of_radar);
+    for (const auto& look : window.radar_looks) AddRadarTarget(window, look, target.data());
+    for (const auto& look : window.camera_looks) AddCameraTarget(window, look, target.data());
+  }
+}
+
+void DriveEquations::AddRadarTarget(const TargetWindow& window, const TargetWindow::RadarLook& look,
+                                    double* target) {
+  const double time_s = SecondsOf(window.middle);
+  const RadarConfig& radar = data.vehicle->radars[static_cast<std::size_t>(look.radar)];
+  const int range_group = Group(RadarName(look.radar) + ".target_range");
+  const int azimuth_group = Group(RadarName(look.radar) + ".target_azimuth");
+  const double across_m = options.wander_m;
+  const Aspect aspect = AspectOf(window, look.pose);
+  const RadarTargetCost range{.pose = look.pose,
+                              .measured = look.range_m,
+                              .sigma = std::hypot(radar.range_sigma_m, across_m),
+                              .is_azimuth = false,
+                              .aspect = aspect,
+                              .range_m = look.range_m,
+                              .sin_azimuth = std::sin(look.azimuth_rad),
+                              .radar_x_m = parameters.Radar(look.radar)[0],
+                              .radar_y_m = parameters.Radar(look.radar)[1]};
+  RadarTargetCost azimuth = range;
+  azimuth.measured = look.azimuth_rad;
+  azimuth.sigma = std::hypot(radar.azimuth_sigma_rad, across_m / std::max(1.0, look.range_m));
+  azimuth.is_azimuth = true;
+  constexpr int kR = MountingParameters::kPerRadar;
+  if (options.offset_m <= 0.0) {
+    Add(AutoDiff<RadarTargetCost, kR, 4>(range), &cauchy, range_group, time_s,
+        parameters.Radar(look.radar), target);
+    Add(AutoDiff<RadarTargetCost, kR, 4>(azimuth), &cauchy, azimuth_group, time_s,
+        parameters.Radar(look.radar), target);
+    return;
+  }
+  auto& offset = offsets[look.chain];
+  if (!offset) {
+    offset = {0.0, 0.0};
+    blocks.push_back(offset->data());
+    for (int k = 0; k < 2; ++k) {
+      Add(AutoDiff<PriorCost, 2>({k, 0.0, options.offset_m}), nullptr,
+          k == 0 ? range_group : azimuth_group, time_s, offset->data());
     }
-    for (const auto& look : window.camera_looks) {
-      const CameraConfig& camera = data.vehicle->cameras[static_cast<std::size_t>(look.camera)];
-      auto& nod = nods[look.picture];
-      if (!nod) {
-        nod = 0.0;
-        blocks.push_back(&*nod);
-        Add(AutoDiff<PriorCost, 1>({0, 0.0, camera.pitch_sigma_rad}), nullptr,
-            Group(CameraName(look.camera) + ".nod"), time_s, &*nod);
-      }
-      for (const bool is_row : {false, true}) {
-        Add(AutoDiff<BoxCost, MountingParameters::kPerCamera, 4, 1>(
-                {&camera, look.pose, is_row ? look.v_px : look.u_px, camera.edge_sigma_px, is_row}),
-            &cauchy, Group(CameraName(look.camera) + (is_row ? ".box_row" : ".box_column")), time_s,
-            parameters.Camera(look.camera), target.data(), &*nod);
-      }
-    }
+  }
+  double* const of_all = Shape(time_s);
+  double* const of_radar = Lean(look.radar, time_s);
+  Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape, kLean>(range), &cauchy, range_group, time_s,
+      parameters.Radar(look.radar), target, offset->data(), of_all, of_radar);
+  Add(AutoDiff<RadarTargetCost, kR, 4, 2, kShape, kLean>(azimuth), &cauchy, azimuth_group, time_s,
+      parameters.Radar(look.radar), target, offset->data(), of_all, of_radar);
+}
+
+void DriveEquations::AddCameraTarget(const TargetWindow& window,
+                                     const TargetWindow::CameraLook& look, double* target) {
+  const double time_s = SecondsOf(window.middle);
+  const CameraConfig& camera = data.vehicle->cameras[static_cast<std::size_t>(look.camera)];
+  auto& nod = nods[look.picture];
+  if (!nod) {
+    nod = 0.0;
+    blocks.push_back(&*nod);
+    Add(AutoDiff<PriorCost, 1>({0, 0.0, camera.pitch_sigma_rad}), nullptr,
+        Group(CameraName(look.camera) + ".nod"), time_s, &*nod);
+  }
+  for (const bool is_row : {false, true}) {
+    Add(AutoDiff<BoxCost, MountingParameters::kPerCamera, 4, 1>(
+            {&camera, look.pose, is_row ? look.v_px : look.u_px, camera.edge_sigma_px, is_row}),
+        &cauchy, Group(CameraName(look.camera) + (is_row ? ".box_row" : ".box_column")), time_s,
+        parameters.Camera(look.camera), target, &*nod);
   }
 }
 

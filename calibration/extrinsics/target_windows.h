@@ -48,10 +48,4 @@ std::vector<TargetWindow> PairTargets(const DriveLog& log, const EgoTrack& ego,
                                       const MountingParameters& parameters,
                                       const std::vector<RadarChain>& chains, double gate_rad);
 
-/// Turns the camera towards the boxes before anything is paired: the yaw and pitch at which most
-/// boxes lie where some chain is predicted, from a histogram of all differences within 5 degrees.
-/// Left as it is where no such angle stands out.
-void AimCamera(const DriveLog& log, const EgoTrack& ego, const VehicleConfig& vehicle, int camera,
-               const std::vector<RadarChain>& chains, MountingParameters& parameters);
-
 }  // namespace v2vouch

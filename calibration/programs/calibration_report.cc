@@ -194,16 +194,10 @@ std::string RemoteTable(const std::vector<RemoteSolution>& remotes) {
   return html + "</table>";
 }
 
-std::string Page(const CalibrationRun& run) {
+// Verdict, logs, how the drive was, and what is wrong.
+std::string HeadText(const CalibrationRun& run) {
   const ExtrinsicsResult& result = run.extrinsics;
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<title>Calibration</title><style>";
-  html += evaluation::ReportStyle();
-  html +=
-      ".pair{display:flex;flex-wrap:wrap;gap:12px}.pair svg{max-width:520px}"
-      "td:last-child{min-width:170px}td,th{text-align:left;padding:2px "
-      "8px}</style></head><body><main>";
+  std::string html;
   html += std::string("<h1>Calibration: ") + (result.accepted ? "accepted" : "not accepted") +
           "</h1><p>";
   for (const std::string& log : run.logs) {
@@ -218,6 +212,40 @@ std::string Page(const CalibrationRun& run) {
   for (const std::string& problem : result.problems) {
     html += "<p><strong>" + Escape(problem) + "</strong></p>";
   }
+  return html;
+}
+
+std::string SensorPictures(const ResidualPictures& pictures) {
+  std::string html;
+  for (const auto& radar : pictures.radars) {
+    html += "<h2>" + Escape(radar.name) + "</h2><div class=\"pair\"><figure>" +
+            DrawBins(radar.doppler_by_azimuth, "azimuth [deg]", "range rate, static [m/s]") +
+            "<figcaption>Doppler of standing things: a curve here is a bumper that bends azimuth."
+            "</figcaption></figure><figure>" +
+            DrawBins(radar.range_by_range, "range [m]", "range residual [m]") +
+            "<figcaption>Range of moving vehicles: a slope here is a range scale."
+            "</figcaption></figure></div>";
+  }
+  for (const auto& camera : pictures.cameras) {
+    html +=
+        "<h2>" + Escape(camera.name) + "</h2><figure>" + DrawPixels(camera) +
+        "<figcaption>Feet of boxes, residuals ten times enlarged: a pattern over the picture is "
+        "a lens that is not the one described.</figcaption></figure>";
+  }
+  return html;
+}
+
+std::string Page(const CalibrationRun& run) {
+  const ExtrinsicsResult& result = run.extrinsics;
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<title>Calibration</title><style>";
+  html += evaluation::ReportStyle();
+  html +=
+      ".pair{display:flex;flex-wrap:wrap;gap:12px}.pair svg{max-width:520px}"
+      "td:last-child{min-width:170px}td,th{text-align:left;padding:2px "
+      "8px}</style></head><body><main>";
+  html += HeadText(run);
   html += "<h2>Parameters</h2>" + ParameterTable(result);
   if (!result.weak.empty()) {
     html +=
@@ -233,21 +261,7 @@ std::string Page(const CalibrationRun& run) {
       "along soak up a part, so below 1 is usual), and by how much their noise exceeds white "
       "noise.</p>" +
       GroupTable(result);
-  for (const auto& radar : result.pictures.radars) {
-    html += "<h2>" + Escape(radar.name) + "</h2><div class=\"pair\"><figure>" +
-            DrawBins(radar.doppler_by_azimuth, "azimuth [deg]", "range rate, static [m/s]") +
-            "<figcaption>Doppler of standing things: a curve here is a bumper that bends azimuth."
-            "</figcaption></figure><figure>" +
-            DrawBins(radar.range_by_range, "range [m]", "range residual [m]") +
-            "<figcaption>Range of moving vehicles: a slope here is a range scale."
-            "</figcaption></figure></div>";
-  }
-  for (const auto& camera : result.pictures.cameras) {
-    html +=
-        "<h2>" + Escape(camera.name) + "</h2><figure>" + DrawPixels(camera) +
-        "<figcaption>Feet of boxes, residuals ten times enlarged: a pattern over the picture is "
-        "a lens that is not the one described.</figcaption></figure>";
-  }
+  html += SensorPictures(result.pictures);
   if (!run.remotes.empty()) {
     html +=
         "<h2>Other vehicles</h2>" + RemoteTable(run.remotes) + "<div class=\"pair\"><figure>" +

@@ -17,9 +17,6 @@
 namespace v2vouch {
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
-
 constexpr const char* kExamples = R"(Examples:
   v2vouch-calibrate drive.lcm --config vehicle.yaml --out calibration.yaml
   v2vouch-calibrate monday.lcm tuesday.lcm --config vehicle.yaml --out calibration.yaml --report report
@@ -46,6 +43,36 @@ bool IsHeldByTheCar(const std::string& name) {
   return name.ends_with(".odometer_y_m") || name.ends_with(".slip_s2pm");
 }
 
+void Complain(const std::string& what) {
+  std::fprintf(stderr, "v2vouch-calibrate: %s\n", what.c_str());
+}
+
+// Writes the report and, where the result is accepted, the calibration file.
+int Deliver(const CalibrationRun& run, const std::string& out, const std::string& report,
+            const std::vector<std::string>& inputs) {
+  std::string error;
+  if (!report.empty() && !WriteCalibrationReport(run, report, error)) {
+    Complain(error);
+    return kExitFailed;
+  }
+  if (!run.extrinsics.accepted) {
+    for (const std::string& problem : run.extrinsics.problems) Complain(problem);
+    Complain("not accepted; " + out + " is as it was");
+    return kExitFailed;
+  }
+  if (!SaveCalibration(out, run.file, error, inputs)) {
+    Complain(error);
+    return kExitFailed;
+  }
+  const bool is_whole = std::ranges::none_of(run.extrinsics.parameters, [](const auto& p) {
+    return !IsApplied(p.verdict) && !IsHeldByTheCar(p.name);
+  });
+  if (!is_whole) {
+    Complain("note: " + CalibrationVerdicts(run) + "; the table says why and what helps");
+  }
+  return kExitGood;
+}
+
 int Run(int argc, char** argv) {
   CLI::App app{
       "Calibrates sensor mounting, antenna, heading bias and speed scale from recorded drives.",
@@ -66,22 +93,18 @@ int Run(int argc, char** argv) {
       ->check(CheckLcmUrl);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-calibrate", argc, argv))
     return *code;
-  const auto complain = [](const std::string& what) {
-    std::fprintf(stderr, "v2vouch-calibrate: %s\n", what.c_str());
-  };
-
   DaemonConfig config;
   std::vector<std::string> problems;
   if (!LoadNominalConfig(config_path, config, problems)) {
-    for (const std::string& problem : problems) complain(problem);
-    return kUsage;
+    for (const std::string& problem : problems) Complain(problem);
+    return kExitUsage;
   }
   std::string error;
   std::vector<std::string> inputs = logs;
   inputs.push_back(config_path);
   if (LookAtOutput(out, inputs, error) == OutputPlace::kRefused) {  // Before minutes of work.
-    complain(error);
-    return kFailed;
+    Complain(error);
+    return kExitFailed;
   }
   const auto start = std::chrono::steady_clock::now();
   const auto run = Calibrate(logs, config, error, ShowProgress);
@@ -89,31 +112,12 @@ int Run(int argc, char** argv) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "\r\033[K");
   if (!run) {
-    complain(error);
-    return kFailed;
+    Complain(error);
+    return kExitFailed;
   }
   std::fputs((as_json ? CalibrationJson(*run, solve_s) : CalibrationText(*run, solve_s)).c_str(),
              stdout);
-  if (!report.empty() && !WriteCalibrationReport(*run, report, error)) {
-    complain(error);
-    return kFailed;
-  }
-  if (!run->extrinsics.accepted) {
-    for (const std::string& problem : run->extrinsics.problems) complain(problem);
-    complain("not accepted; " + out + " is as it was");
-    return kFailed;
-  }
-  if (!SaveCalibration(out, run->file, error, inputs)) {
-    complain(error);
-    return kFailed;
-  }
-  const bool is_whole = std::ranges::none_of(run->extrinsics.parameters, [](const auto& p) {
-    return !IsApplied(p.verdict) && !IsHeldByTheCar(p.name);
-  });
-  if (!is_whole) {
-    complain("note: " + CalibrationVerdicts(*run) + "; the table says why and what helps");
-  }
-  return 0;
+  return Deliver(*run, out, report, inputs);
 }
 
 }  // namespace

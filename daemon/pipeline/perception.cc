@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "daemon/common/models/ctra.h"
+#include "daemon/pipeline/predicted_lists.h"
 #include "daemon/pipeline/source_clock.h"
 #include "daemon/pipeline/timeline.h"
 #include "daemon/v2v/intake/own_ids.h"
@@ -29,38 +29,8 @@ NoticeSubject SourceOf(const ObjectList& list) {
   return {SubjectKind::kObjects, static_cast<std::uint32_t>(list.sensor)};
 }
 
-// What is not known of the ego's own motion `gap_s` after its last sample, for lists that are read
-// from the ego: it may have braked or steered since. Accelerations of 2 m/s^2 either way are one
-// sigma, and so is a change of the yaw rate by 0.1 rad/s in a second.
-StateMatrix EgoDriftCovariance(double gap_s) {
-  constexpr double kAccelSigma_mps2 = 2.0;
-  constexpr double kYawAccelSigma_radps2 = 0.1;
-  const double position_m = 0.5 * kAccelSigma_mps2 * gap_s * gap_s;
-  const double yaw_rad = 0.5 * kYawAccelSigma_radps2 * gap_s * gap_s;
-  StateMatrix doubt = StateMatrix::Zero();
-  doubt(kX, kX) = doubt(kY, kY) = position_m * position_m;
-  doubt(kYaw, kYaw) = yaw_rad * yaw_rad;
-  return doubt;
-}
-
 constexpr NoticeSubject kGnssSource{SubjectKind::kGnss, 0};
 constexpr NoticeSubject kV2vSource{SubjectKind::kV2v, 0};
-
-std::optional<Reason> RefusalOf(SourceClock::Ruling ruling) {
-  switch (ruling) {
-    case SourceClock::Ruling::kAccept:
-      return std::nullopt;
-    case SourceClock::Ruling::kAhead:
-      return Reason::kFutureStamp;
-    case SourceClock::Ruling::kBehind:
-      return Reason::kTooOld;
-    case SourceClock::Ruling::kStuck:
-      return Reason::kStuckStamp;
-    case SourceClock::Ruling::kOverRate:
-      return Reason::kOverRate;
-  }
-  return std::nullopt;
-}
 
 }  // namespace
 
@@ -83,7 +53,6 @@ struct Perception::State {
   bool IsTooFarAhead(const NoticeSubject& guest, Timestamp stamp);
   [[nodiscard]] EgoPlace Place() const;
   void Publish(bool is_correction, Outputs& outputs);
-  void LocalList(const LocalFrame& frame, TrackList& list) const;
 
   PerceptionConfig config;
   SourceClock clock;
@@ -253,7 +222,7 @@ void Perception::State::Publish(bool is_correction, Outputs& outputs) {
   ++lists;
   outputs.has_lists = true;
 
-  LocalList(frame, outputs.local);
+  ListLocal(frame, lists, revision, outputs.local);
 
   const Timestamp at = std::max(frame.stamp, timeline.newest_time());
   const EgoState ego_at = timeline.local().odometry().StateAt(at).value_or(frame.ego);
@@ -272,67 +241,12 @@ void Perception::State::Publish(bool is_correction, Outputs& outputs) {
   }
 }
 
-void Perception::State::LocalList(const LocalFrame& frame, TrackList& list) const {
-  list.stamp = frame.stamp;
-  list.seq = lists;
-  list.revision = revision;
-  list.stale = false;
-  list.ego_gnss_suspect = false;  // GNSS is none of LOCAL's business.
-  list.X_OB = frame.ego.X_OB;
-  list.sectors = frame.sectors;
-  list.tracks.clear();
-  for (const LocalTrack& track : frame.tracks) {
-    if (track.is_confirmed) list.tracks.push_back({.track = track});
-  }
-}
-
 void Perception::PredictedLists(Timestamp at, Outputs& outputs) const {
   outputs.Clear();
   const State& state = *state_;
-  const LocalFrame* frame = state.timeline.newest_frame();
-  if (frame == nullptr || at < frame->stamp) return;
-  outputs.has_lists = true;
-  const EgoOdometry& odometry = state.timeline.local().odometry();
-  const double hold_s = state.config.timeline.stale_hold_s;
-  const Timestamp end = frame->stamp + FromSeconds(hold_s);
-  // The ego is predicted like all vehicles; past the end its pose is of no use.
-  const auto ego_at = [&](Timestamp t) {
-    const double longest_gap_s = EgoOdometry::kMaxGap_s + hold_s;
-    return odometry.StateAt(std::min(t, end), longest_gap_s).value_or(frame->ego);
-  };
-  const auto doubt = [&](Timestamp t) {
-    const Timestamp known = odometry.newest().value_or(frame->stamp);
-    return EgoDriftCovariance(std::max(0.0, ToSeconds(std::min(t, end) - known)));
-  };
-
-  state.LocalList(*frame, outputs.local);
-  outputs.local.stamp = at;
-  outputs.local.stale = true;
-  outputs.local.X_OB = ego_at(at).X_OB;
-  for (SectorHealth& sector : outputs.local.sectors) sector.state = SectorState::kBlind;
-
-  const Timestamp at_v2v = std::max(at, state.timeline.newest_time());
-  const EgoState ego_v2v = ego_at(at_v2v);
-  outputs.priority = outputs.local;
-  outputs.priority.stamp = at_v2v;
-  outputs.priority.X_OB = ego_v2v.X_OB;
-  outputs.priority.tracks.clear();
-  outputs.priority.ego_gnss_suspect = state.timeline.priority().is_ego_gnss_suspect();
-
-  // No sensor supports any track any more: the list is empty and all sectors are blind, which is
-  // not the same as "nothing there".
-  if (at > end) {
-    outputs.local.tracks.clear();
-    return;
-  }
-  for (PublishedTrack& line : outputs.local.tracks) {
-    PredictCtra(line.track.state_O, ToSeconds(at - frame->stamp), state.config.tracking.motion);
-    line.track.state_O.covariance += doubt(at);
-  }
-  state.timeline.priority().Publish(at_v2v, ego_v2v, outputs.priority);
-  for (PublishedTrack& line : outputs.priority.tracks) {
-    line.track.state_O.covariance += doubt(at_v2v);
-  }
+  if (state.timeline.newest_frame() == nullptr || at < newest_frame()) return;
+  ListLocal(*state.timeline.newest_frame(), state.lists, state.revision, outputs.local);
+  PredictLists(state.timeline, state.config, at, outputs);
 }
 
 std::optional<Timestamp> Perception::agreed_time() const { return state_->clock.agreed(); }

@@ -266,4 +266,20 @@ void SourceClock::CollectNotices(std::vector<Notice>& notices) const {
   }
 }
 
+std::optional<Reason> RefusalOf(SourceClock::Ruling ruling) {
+  switch (ruling) {
+    case SourceClock::Ruling::kAccept:
+      return std::nullopt;
+    case SourceClock::Ruling::kAhead:
+      return Reason::kFutureStamp;
+    case SourceClock::Ruling::kBehind:
+      return Reason::kTooOld;
+    case SourceClock::Ruling::kStuck:
+      return Reason::kStuckStamp;
+    case SourceClock::Ruling::kOverRate:
+      return Reason::kOverRate;
+  }
+  return std::nullopt;
+}
+
 }  // namespace v2vouch

@@ -119,4 +119,7 @@ class SourceClock {
   bool is_strict_ = false;
 };
 
+/// Why a ruling refuses its message; nullopt where it does not.
+std::optional<Reason> RefusalOf(SourceClock::Ruling ruling);
+
 }  // namespace v2vouch

@@ -2,23 +2,20 @@
 #include "daemon/warnings/assess.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "daemon/common/base/angle.h"
+#include "daemon/warnings/levels.h"
+#include "daemon/warnings/placement.h"
+#include "daemon/warnings/turn_plans.h"
 
 namespace v2vouch::warnings {
 namespace {
 
 constexpr double kStands_mps = 0.5;
-constexpr double kTargetStands_mps = 1.0;
 constexpr double kTurning_radps = 0.1;  // With a car's steering: about to turn off.
 constexpr double kFastestTurn_mps = 30.0 / 3.6;
-constexpr double kSameDirection_rad = 0.786;  // 45 degrees
-constexpr double kOncoming_rad = 2.356;       // 135 degrees
 constexpr double kLeftTurnOncoming_rad = 1.745;
 constexpr double kAdjacent_m = 5.4;
-constexpr double kEye_m = 1.5;  // Driver's eye ahead of the rear axle, about.
 
 double Phi(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
@@ -39,78 +36,27 @@ class Assessor {
     is_slow_ = ego.speed_mps <= kFastestTurn_mps;
     turns_left_ = is_slow_ && !stands_ && ego.yaw_rate_radps > kTurning_radps;
     signal_ = scene.intent ? scene.intent->turn_signal : TurnSignal::kUnknown;
-    MakeTurns();
+    for (const EgoPlan& turn :
+         PlanTurns(plan_, {stands_, is_slow_, turns_left_, signal_}, config_)) {
+      turns_.emplace_back(turn, sigmas_, body_, config_);
+    }
     fan_.emplace(plan_, sigmas_, body_, config_);
   }
 
   std::vector<Assessment> Run() {
     for (const Target& target : scene_.targets) {
       target_ = &target;
-      body_target_ = InBody(target);
-      if (IsInEgo()) continue;
+      body_target_ = InBody(target, scene_.ego_p_O, scene_.ego_yaw_O);
+      if (IsInEgo(body_target_, body_)) continue;
       placement_ = Classify(plan_, body_, body_target_, config_);
-      One();
+      AssessTarget();
     }
     return std::move(found_);
   }
 
  private:
-  [[nodiscard]] BodyTarget InBody(const Target& target) const {
-    BodyTarget out;
-    const double c = std::cos(scene_.ego_yaw_O);
-    const double s = std::sin(scene_.ego_yaw_O);
-    StateMatrix turn = StateMatrix::Identity();
-    turn(kX, kX) = c;
-    turn(kX, kY) = s;
-    turn(kY, kX) = -s;
-    turn(kY, kY) = c;
-    StateVector mean = target.state_O.mean;
-    mean.head<2>() -= scene_.ego_p_O;
-    out.mean = turn * mean;
-    out.mean[kYaw] = WrapAngle(mean[kYaw] - scene_.ego_yaw_O);
-    out.covariance = turn * target.state_O.covariance * turn.transpose();
-    out.size = {0.5 * target.extent.length_m, 0.5 * target.extent.width_m};
-    return out;
-  }
-
-  // A box well inside the ego's own: contact already, or a track of nothing; no warning helps.
-  [[nodiscard]] bool IsInEgo() const {
-    constexpr double kDeep_m = 0.3;
-    const HalfSize own{0.5 * body_.length_m - kDeep_m, 0.5 * body_.width_m - kDeep_m};
-    const StateVector& x = body_target_.mean;
-    return Touch({{body_.centre_x_m, 0.0}, {1.0, 0.0}}, own,
-                 {x.head<2>(), {std::cos(x[kYaw]), std::sin(x[kYaw])}}, body_target_.size);
-  }
-
-  // Left turns that the driver may be about to take: the one begun, and after the signal the usual
-  // one of this speed (radii of Euro NCAP's CCFtap), now or soon.
-  void MakeTurns() {
-    if (turns_left_) AddTurn(plan_);
-    if (!plan_.path_B.empty()) {
-      const Eigen::Vector2d last = plan_.path_B.back() - plan_.path_B[plan_.path_B.size() - 2];
-      if (std::atan2(last.y(), last.x()) > 0.5) AddTurn(plan_);
-      return;
-    }
-    if (signal_ != TurnSignal::kLeft || !is_slow_) return;
-    const double speed = scene_.ego.speed_mps;
-    EgoPlan turn = plan_;
-    turn.turn_curvature_per_m = 1.0 / (speed < 3.47 ? 9.0 : speed < 4.86 ? 11.75 : 14.75);
-    turn.turn_after_s = 0.0;
-    if (stands_) {
-      turn.starts = true;
-      turn.accel_mps2 = config_.start_accel_mps2;
-      AddTurn(turn);
-      return;
-    }
-    for (const double after_s : {0.0, 0.5, 1.0, 1.5, 2.0}) {
-      turn.turn_after_s = after_s;
-      AddTurn(turn);
-    }
-  }
-
-  void AddTurn(const EgoPlan& plan) { turns_.emplace_back(plan, sigmas_, body_, config_); }
-
-  void One() {
+  // All kinds that apply to the vehicle at hand.
+  void AssessTarget() {
     const Zone zone = placement_.zone;
     const double heading = std::abs(body_target_.mean[kYaw]);
     const bool moves = std::abs(body_target_.mean[kSpeed]) >= kTargetStands_mps;
@@ -299,39 +245,11 @@ class Assessor {
              Level at_most = Level::kUrgent, Level by_gap = Level::kInfo) {
     Warning warning = NewWarning(kind, side);
     warning.figures = figures;
-    // NaN compares false: never measured by an own sensor, never URGENT.
-    const bool may_be_urgent = figures.own_sensor_age_s <= config_.urgent_unseen_s;
-    const auto level_of = [&](double existence) {
-      if (existence * conflict.probability_exact >= config_.urgent_probability &&
-          conflict.exact_median_s <= figures.urgent_before_s && may_be_urgent) {
-        return Level::kUrgent;
-      }
-      if (existence * conflict.probability >= config_.warn_probability &&
-          conflict.median_s <= figures.warn_before_s) {
-        return Level::kWarn;
-      }
-      return existence * conflict.probability >= config_.advise_probability ? Level::kAdvise
-                                                                            : Level::kInfo;
-    };
-    warning.level = level_of(target_->existence);
-    Level sure = level_of(1.0);
-    if (target_->visibility != Visibility::kVisible && std::isfinite(conflict.reachable_s)) {
-      const Level reach =
-          conflict.reachable_s <= figures.warn_before_s ? Level::kWarn : Level::kAdvise;
-      if (reach > warning.level) {
-        warning.level = reach;
-        warning.basis = Basis::kReachable;
-      }
-    }
-    if (by_gap > warning.level && target_->existence >= config_.warn_probability) {
-      warning.level = by_gap;
-      warning.basis = Basis::kGap;
-    }
-    if (target_->is_sudden) at_most = Level::kAdvise;
-    warning.level = std::min(warning.level, at_most);
-    sure = std::max(warning.level, std::min(sure, at_most));
-    if (sure < Level::kAdvise) return;
-    found_.push_back({warning, sure});
+    const Levels levels = LevelsOf(*target_, conflict, figures, {at_most, by_gap}, config_);
+    warning.level = levels.level;
+    warning.basis = levels.basis;
+    if (levels.if_sure < Level::kAdvise) return;
+    found_.push_back({warning, levels.if_sure});
   }
 
   const Scene& scene_;
@@ -352,87 +270,7 @@ class Assessor {
   std::vector<Assessment> found_;
 };
 
-void PredictInO(Target& target, double dt_s) {
-  StateVector& x = target.state_O.mean;
-  const double moved_m = x[kSpeed] * dt_s;
-  const double yaw = x[kYaw] + 0.5 * dt_s * x[kYawRate];
-  x[kX] += moved_m * std::cos(yaw);
-  x[kY] += moved_m * std::sin(yaw);
-  x[kYaw] += dt_s * x[kYawRate];
-}
-
-std::vector<Target> At(const TargetList* list, Timestamp now) {
-  if (list == nullptr) return {};
-  std::vector<Target> targets = list->targets;
-  for (Target& target : targets) PredictInO(target, ToSeconds(now - list->stamp));
-  return targets;
-}
-
 }  // namespace
-
-std::vector<Target> MergeLists(const TargetList* local, const TargetList* priority, Timestamp now) {
-  std::vector<Target> merged = At(local, now);
-  for (Target& theirs : At(priority, now)) {
-    const auto own = std::ranges::find_if(merged, [&theirs](const Target& each) {
-      return theirs.local_id != 0 && each.local_id == theirs.local_id &&
-             each.source != Source::kPriority;
-    });
-    if (own == merged.end()) {
-      theirs.source = Source::kPriority;
-      theirs.local_id = 0;
-      merged.push_back(std::move(theirs));
-      continue;
-    }
-    own->track_id = theirs.track_id;
-    own->source = Source::kBoth;
-    own->bridge_budget_s = theirs.bridge_budget_s;
-    own->existence = std::max(own->existence, theirs.existence);
-    own->last_own = std::max(own->last_own, theirs.last_own);
-    if (own->visibility != Visibility::kVisible) {
-      own->state_O = theirs.state_O;
-      own->extent = theirs.extent;
-    }
-  }
-  std::ranges::sort(merged, [](const Target& a, const Target& b) {
-    return std::pair(a.local_id, a.track_id) < std::pair(b.local_id, b.track_id);
-  });
-  return merged;
-}
-
-Placement Classify(const EgoPlan& plan, const EgoBody& body, const BodyTarget& target,
-                   const WarningsConfig& config) {
-  Placement placement;
-  placement.place = PlaceOnPath(plan, target.mean.head<2>());
-  const double reverse = target.mean[kSpeed] < 0.0 ? kPi : 0.0;
-  const double turned = WrapAngle(target.mean[kYaw] - placement.place.yaw_rad);
-  placement.turned_rad = WrapAngle(turned + reverse);
-  placement.half_across_m = std::abs(target.size.length_m * std::sin(turned)) +
-                            std::abs(target.size.width_m * std::cos(turned));
-  const double along = placement.place.along_m;
-  const double in_path_m = 0.5 * body.width_m + placement.half_across_m + config.path_margin_m;
-  const bool in_path = std::abs(placement.place.left_m) <= in_path_m;
-  const bool stands = std::abs(target.mean[kSpeed]) < kTargetStands_mps;
-  const double off = std::abs(placement.turned_rad);
-  const double front_m = body.centre_x_m + 0.5 * body.length_m;
-  if (stands) {
-    if (along > front_m && in_path) placement.zone = Zone::kAhead;
-    return placement;
-  }
-  if (off <= kSameDirection_rad) {
-    if (target.mean[kX] < kEye_m) {
-      placement.zone = Zone::kBehind;
-    } else {
-      placement.zone = in_path ? Zone::kAhead : Zone::kAheadAside;
-    }
-  } else if (along < 0.0) {
-    placement.zone = Zone::kElsewhere;
-  } else if (off >= kOncoming_rad) {
-    placement.zone = Zone::kOncoming;
-  } else {
-    placement.zone = placement.turned_rad < 0.0 ? Zone::kFromLeft : Zone::kFromRight;
-  }
-  return placement;
-}
 
 std::vector<Assessment> Assess(const Scene& scene, const EgoBody& body,
                                const WarningsConfig& config) {

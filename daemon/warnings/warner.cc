@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/warnings/merge_lists.h"
 
 namespace v2vouch::warnings {
 namespace {
@@ -35,6 +36,14 @@ SectorState WatchedAt(const std::vector<SectorHealth>& sectors, double bearing_r
 }
 
 int Rank(Level level) { return level == Level::kLost ? 0 : static_cast<int>(level); }
+
+// The higher level first, then the sooner conflict.
+bool IsMoreUrgent(const Warning& a, const Warning& b) {
+  const auto time = [](const Warning& w) {
+    return std::isnan(w.figures.time_to_conflict_s) ? 1e9 : w.figures.time_to_conflict_s;
+  };
+  return std::pair(-Rank(a.level), time(a)) < std::pair(-Rank(b.level), time(b));
+}
 
 }  // namespace
 
@@ -88,19 +97,22 @@ std::int32_t Warner::Availability(const TargetList& newest, std::int32_t& degrad
   return available;
 }
 
+void Warner::StartAnew(const TargetList& newest) {
+  const Duration stale = FromSeconds(config_.stale_s);
+  entries_.clear();
+  pasts_.clear();
+  last_fresh_ = newest.is_stale ? Timestamp{} : newest.stamp;
+  if (local_ && local_->stamp > newest.stamp + stale) local_.reset();
+  if (priority_ && priority_->stamp > newest.stamp + stale) priority_.reset();
+}
+
 WarningList Warner::Make() {
   const TargetList& newest =
       priority_ && (!local_ || priority_->stamp >= local_->stamp) ? *priority_ : *local_;
   const Timestamp now = newest.stamp;
   const Duration stale = FromSeconds(config_.stale_s);
   // Time steps back only where the daemon started anew.
-  if (now + stale < last_now_) {
-    entries_.clear();
-    pasts_.clear();
-    last_fresh_ = newest.is_stale ? Timestamp{} : now;
-    if (local_ && local_->stamp > now + stale) local_.reset();
-    if (priority_ && priority_->stamp > now + stale) priority_.reset();
-  }
+  if (now + stale < last_now_) StartAnew(newest);
   last_now_ = now;
 
   WarningList out;
@@ -140,21 +152,20 @@ WarningList Warner::Make() {
     }
     Take(Assess(scene, body_, config_), now);
   }
+  EndEntries(now);
+  for (const Entry& entry : entries_) {
+    if (entry.is_shown) out.warnings.push_back(entry.shown);
+  }
+  std::ranges::stable_sort(out.warnings, IsMoreUrgent);
+  return out;
+}
+
+void Warner::EndEntries(Timestamp now) {
   for (Entry& entry : entries_) EndOrHold(entry, now);
   std::erase_if(entries_, [now, this](const Entry& entry) {
     return !entry.is_shown && !entry.is_present &&
            now - entry.last_true[0] > FromSeconds(config_.clear_s);
   });
-  for (const Entry& entry : entries_) {
-    if (entry.is_shown) out.warnings.push_back(entry.shown);
-  }
-  std::ranges::stable_sort(out.warnings, [](const Warning& a, const Warning& b) {
-    const auto time = [](const Warning& w) {
-      return std::isnan(w.figures.time_to_conflict_s) ? 1e9 : w.figures.time_to_conflict_s;
-    };
-    return std::pair(-Rank(a.level), time(a)) < std::pair(-Rank(b.level), time(b));
-  });
-  return out;
 }
 
 void Warner::NoteSpeeds(std::vector<Target>& targets, Timestamp now) {

@@ -50,6 +50,8 @@ class Warner {
   };
 
   WarningList Make();
+  void StartAnew(const TargetList& newest);
+  void EndEntries(Timestamp now);
   void NoteSpeeds(std::vector<Target>& targets, Timestamp now);
   void Take(const std::vector<Assessment>& found, Timestamp now);
   void Advance(Entry& entry, Level level, Timestamp now);

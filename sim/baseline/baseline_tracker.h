@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "daemon/common/data/vehicle.h"
+#include "sim/baseline/radar_clusters.h"
 
 namespace v2vouch::baseline {
 
@@ -43,14 +44,6 @@ class BaselineTracker {
  private:
   using Vec2 = Eigen::Vector2d;
   using Vec4 = Eigen::Vector4d;
-  struct Cluster {
-    Vec2 face_O;    ///< Near face, odometry frame.
-    Vec2 sensor_O;  ///< Antenna.
-    Vec2 sensor_velocity_O;
-    double rate_mps;  ///< Of the strongest return.
-    bool is_moving;
-    bool is_taken = false;
-  };
   struct Track {
     std::int64_t id;
     Vec4 x;  ///< Centre and velocity, odometry frame.
@@ -67,8 +60,6 @@ class BaselineTracker {
 
   void MoveEgo(std::int64_t utime);
   void Predict(std::int64_t utime);
-  [[nodiscard]] std::vector<Cluster> Clusters(const RadarConfig& radar,
-                                              const radar_scan_t& scan) const;
   void Update(const RadarConfig& radar, const Cluster& cluster, Track& track) const;
   void Start(const Cluster& cluster);
   void Forget();

@@ -14,6 +14,7 @@
 #include "daemon/common/base/random.h"
 #include "daemon/common/data/object_class.h"
 #include "daemon/rim/wire/codec.h"
+#include "sim/import/kitti_path.h"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/ego_motion_t.hpp"
@@ -24,9 +25,6 @@ namespace v2vouch::sim {
 namespace {
 
 constexpr std::int64_t kStart_us = 1'316'995'200'000'000;  // 2011-09-26 00:00 UTC.
-constexpr std::int64_t kFrame_us = 100'000;
-constexpr std::int64_t kMotion_us = 20'000;
-constexpr double kFrame_s = 0.1;
 constexpr double kLeastHeight_px = 12.0;
 constexpr int kLargelyHidden = 2;
 constexpr double kSpeedSigma_mps = 0.1;
@@ -40,43 +38,6 @@ std::optional<ObjectClass> ClassOf(const std::string& type) {
       {"Cyclist", ObjectClass::kCyclist}, {"Pedestrian", ObjectClass::kPedestrian}};
   const auto found = kClasses.find(type);
   return found == kClasses.end() ? std::nullopt : std::optional(found->second);
-}
-
-struct Pose2 {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double yaw_rad = 0.0;
-};
-
-KittiMotion MotionAt(const std::vector<KittiMotion>& motion, double frame) {
-  const double last = static_cast<double>(motion.size()) - 1.0;
-  const double at = std::clamp(frame, 0.0, last);
-  const auto before = static_cast<std::size_t>(at);
-  const std::size_t after = std::min(before + 1, motion.size() - 1);
-  const double u = at - static_cast<double>(before);
-  const auto between = [u](double a, double b) { return a + u * (b - a); };
-  return {between(motion[before].speed_mps, motion[after].speed_mps),
-          between(motion[before].yaw_rate_radps, motion[after].yaw_rate_radps), true};
-}
-
-// Poses at the frames, by the middle of each 20 ms piece.
-std::vector<Pose2> Integrated(const std::vector<KittiMotion>& motion) {
-  constexpr int kPieces = static_cast<int>(kFrame_us / kMotion_us);
-  std::vector<Pose2> poses(motion.size());
-  Pose2 pose;
-  for (std::size_t k = 0; k < motion.size(); ++k) {
-    poses[k] = pose;
-    for (int i = 0; i < kPieces; ++i) {
-      const KittiMotion now =
-          MotionAt(motion, static_cast<double>(k) + (i + 0.5) / static_cast<double>(kPieces));
-      const double piece_s = kFrame_s / kPieces;
-      const double yaw = pose.yaw_rad + 0.5 * piece_s * now.yaw_rate_radps;
-      pose.x_m += piece_s * now.speed_mps * std::cos(yaw);
-      pose.y_m += piece_s * now.speed_mps * std::sin(yaw);
-      pose.yaw_rad += piece_s * now.yaw_rate_radps;
-    }
-  }
-  return poses;
 }
 
 class Drive {

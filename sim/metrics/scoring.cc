@@ -13,33 +13,6 @@
 namespace v2vouch::evaluation {
 namespace {
 
-struct PlacedTruth {
-  std::size_t object = 0;
-  Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
-  bool is_inside = false;
-  Sighting sighting = Sighting::kVisible;
-
-  [[nodiscard]] bool is_seen() const { return sighting == Sighting::kVisible; }
-};
-
-bool IsInScope(const TruthObject& object, ListKind kind, Against against) {
-  if (!object.is_vehicle()) return false;
-  return against == Against::kAllVehicles || kind == ListKind::kLocal || object.has_v2v;
-}
-
-double NeesAt(const RunLog& log, const TruthObject& object, const ReceivedList& list,
-              const ListedTrack& track) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const auto X_WB = log.truth.EgoPose(list.stamp);
-  const auto truth = object.motion.At(list.stamp);
-  if (!X_WB || !truth) return kNone;
-  const Point<Body> p_B = X_WB->Inverse() * Point<World>{truth->x_m, truth->y_m};
-  const Eigen::Vector2d error = p_B.vector() - track.motion_B.position();
-  const Eigen::Matrix2d& P = track.position_covariance_B;
-  if (!(P.allFinite() && P(0, 0) > 0.0 && P.determinant() > 0.0)) return kNone;
-  return error.dot(P.inverse() * error);
-}
-
 /// Gathers one list's figures instant by instant.
 class Scorer {
  public:
@@ -66,7 +39,7 @@ class Scorer {
     };
     const ReceivedList* list = NewestBy(log_.lists[Index(score_.kind)], t);
     const std::vector<PlacedTrack> tracks = PlaceTracks(log_, list, score_.kind, t);
-    const std::vector<PlacedTruth> truths = PlaceTruths(t, X_WB, inside);
+    const std::vector<PlacedTruth> truths = PlaceTruths(log_, score_.kind, against_, t, X_WB);
     truth_points_.clear();
     track_points_.clear();
     for (const auto& truth : truths) truth_points_.push_back(truth.p_W);
@@ -84,15 +57,14 @@ class Scorer {
       const PlacedTruth& truth = truths[i];
       const int j = assignment[i];
       if (j >= 0) is_used[static_cast<std::size_t>(j)] = 1;
-      if (!truth.is_inside) continue;
+      if (!inside(truth.p_W)) continue;
       ++now.truths;
       const PlacedTrack* track = j < 0 ? nullptr : &tracks[static_cast<std::size_t>(j)];
       TakeTruth(k, truth, track, list, now);
       TakeBound(k, truth, track != nullptr, now, bound_pow, plain_pow);
     }
     for (std::size_t j = 0; j < tracks.size(); ++j) {
-      if (is_used[j] || !inside(track_points_[j]) || IsBesideRoadUser(track_points_[j], t))
-        continue;
+      if (is_used[j] || !inside(track_points_[j]) || IsRoadUser(track_points_[j], t)) continue;
       ++now.false_tracks;
       false_ids_.insert(tracks[j].track->id);
       RememberTrack(k, tracks[j]);
@@ -163,20 +135,6 @@ class Scorer {
   }
 
  private:
-  template <class Inside>
-  [[nodiscard]] std::vector<PlacedTruth> PlaceTruths(Timestamp t, const Pose<World, Body>& X_WB,
-                                                     const Inside& inside) const {
-    std::vector<PlacedTruth> truths;
-    for (std::size_t o = 0; o < log_.truth.objects.size(); ++o) {
-      const TruthObject& object = log_.truth.objects[o];
-      if (!IsInScope(object, score_.kind, against_)) continue;
-      const auto motion = object.motion.At(t);
-      if (!motion) continue;
-      truths.push_back({o, motion->position(), inside(motion->position()),
-                        TrueSighting(*object.motion.InForce(t), *motion, X_WB, log_.specs)});
-    }
-    return truths;
-  }
   Anees& AneesOf(Sighting sighting) {
     return sighting == Sighting::kVisible  ? score_.visible
            : sighting == Sighting::kHidden ? score_.hidden
@@ -244,14 +202,9 @@ class Scorer {
   }
 
   /// LOCAL may list what is really a pedestrian or cyclist without a class.
-  [[nodiscard]] bool IsBesideRoadUser(const Eigen::Vector2d& p, Timestamp t) const {
-    if (score_.kind != ListKind::kLocal) return false;
-    for (const TruthObject& object : log_.truth.objects) {
-      if (object.is_vehicle()) continue;
-      const auto motion = object.motion.At(t);
-      if (motion && (motion->position() - p).norm() < settings_.cutoff_m) return true;
-    }
-    return false;
+  [[nodiscard]] bool IsRoadUser(const Eigen::Vector2d& p, Timestamp t) const {
+    return score_.kind == ListKind::kLocal &&
+           IsBesideRoadUser(log_.truth, p, t, settings_.cutoff_m);
   }
 
   void RememberTrack(std::size_t k, const PlacedTrack& track) {

@@ -9,6 +9,7 @@
 
 #include "sim/metrics/bound.h"
 #include "sim/metrics/gospa.h"
+#include "sim/metrics/placing.h"
 #include "sim/metrics/sight.h"
 #include "sim/metrics/tgospa.h"
 #include "sim/run_log/run_log.h"
@@ -17,12 +18,6 @@ namespace v2vouch::evaluation {
 
 /// A statistic over nothing: "none" in tables, null in JSON.
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-
-/// Which true vehicles a list is held against.
-enum class Against {
-  kOwnScope,     ///< LOCAL: every vehicle, parked ones too. PRIORITY and V2V: those that send BSMs.
-  kAllVehicles,  ///< Every vehicle for every list, as the paper does.
-};
 
 struct ScoringSettings {
   double cutoff_m = 10.0;

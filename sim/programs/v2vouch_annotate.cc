@@ -15,9 +15,6 @@
 
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
-
 constexpr const char* kExamples = R"(Examples:
   v2vouch-annotate tracks.lcm pictures/
   v2vouch-annotate tracks.lcm pictures/ --camera FRONT --every 10
@@ -37,7 +34,8 @@ int Complain(const std::string& what, int code) {
 int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folder, bool as_json) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
-  if (failed) return Complain(folder + ": cannot be made: " + failed.message(), kFailed);
+  if (failed)
+    return Complain(folder + ": cannot be made: " + failed.message(), v2vouch::kExitFailed);
   const bool is_terminal = isatty(STDERR_FILENO) == 1;
   v2vouch::sim::AnnotationResult result;
   std::string error;
@@ -56,7 +54,7 @@ int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folde
   const bool is_done = v2vouch::sim::AnnotateLog(request, write, result, error);
   if (is_terminal) std::fprintf(stderr, "\r\033[K");
   if (!is_done || !error.empty()) {
-    return Complain(error, result.is_bad_request ? kUsage : kFailed);
+    return Complain(error, result.is_bad_request ? v2vouch::kExitUsage : v2vouch::kExitFailed);
   }
   const nlohmann::ordered_json report = {{"frames", result.frames},
                                          {"pictures", result.pictures},
@@ -73,7 +71,7 @@ int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folde
                         ": none of the pictures could be read in the camera's size: "
                         "boxes and tracks are drawn on an empty road. Are image_width_px and "
                         "image_height_px those of the pictures?",
-                    kFailed);
+                    v2vouch::kExitFailed);
   }
   if (!result.has_images) {
     Complain("note: the log holds no pictures of this camera: boxes are drawn on an empty road", 0);
@@ -114,6 +112,6 @@ int main(int argc, char** argv) {
   try {
     return Run(request, folder, as_json);
   } catch (const std::exception& error) {
-    return Complain(error.what(), kFailed);
+    return Complain(error.what(), v2vouch::kExitFailed);
   }
 }

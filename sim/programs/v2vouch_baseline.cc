@@ -13,9 +13,6 @@
 
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
-
 constexpr const char* kExamples =
     "Examples:\n"
     "  v2vouch-baseline drive.lcm --config vehicle.yaml --out base.lcm\n"
@@ -48,12 +45,12 @@ int main(int argc, char** argv) {
     for (const std::string& problem : problems) {
       std::fprintf(stderr, "v2vouch-baseline: %s\n", problem.c_str());
     }
-    return kUsage;
+    return v2vouch::kExitUsage;
   }
   std::string error;
   if (!v2vouch::baseline::RunBaseline(in, file.vehicle, v2vouch::config::Print(file), out, error)) {
     std::fprintf(stderr, "v2vouch-baseline: %s\n", error.c_str());
-    return kFailed;
+    return v2vouch::kExitFailed;
   }
   return 0;
 }

@@ -3,8 +3,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "daemon/rim/io/lcm_url.h"
@@ -17,9 +20,9 @@ namespace {
 
 using namespace v2vouch::bench;
 
-constexpr int kGood = 0;
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
+using v2vouch::kExitFailed;
+using v2vouch::kExitGood;
+using v2vouch::kExitUsage;
 
 constexpr const char* kExamples =
     "Examples:\n"
@@ -90,33 +93,42 @@ void PrintTable(const BenchFigures& f) {
               OrNone("%.3f ms", f.ms_quantile(0.95)).c_str());
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  v2vouch::GuardStandardStreams("v2vouch-bench-tracker");
-  CLI::App app("Runs the tracker core over recorded or generated detections: accuracy and time.");
-  app.footer(kExamples);
-  std::string path, out_path, seeds = "1", lcm_url;
+/// What the command line asks for.
+struct Request {
+  std::string path, out_path, seeds = "1";
+  std::uint64_t first_seed = 1, last_seed = 1;  // Of `seeds`.
   BenchSettings settings;
   TrafficSpec traffic;
+  KittiRequest kitti;
   double rotate_rad = 0.0;
-  bool as_json = false;
+  bool has_file = false;
+};
+
+struct Options {
+  CLI::Option* file;
+  CLI::Option* generate;
+};
+
+Options AddTrafficOptions(CLI::App& app, Request& request) {
+  TrafficSpec& traffic = request.traffic;
+  BenchSettings& settings = request.settings;
   const auto share = CLI::Range(0.0, 1.0);
   const auto sigma = CLI::Range(1e-6, 1e3);
-  auto* file = app.add_option("FILE", path, "Recording, CSV or CSV.gz");
+  auto* file = app.add_option("FILE", request.path, "Recording, CSV or CSV.gz");
   auto* generate =
       app.add_option("--generate", traffic.vehicles, "Make traffic of N vehicles instead")
           ->check(CLI::Range(1, 4000))
           ->excludes(file);
-  app.add_option("--seeds", seeds, "Of --generate: one, or FIRST-LAST")->capture_default_str();
+  app.add_option("--seeds", request.seeds, "Of --generate: one, or FIRST-LAST")
+      ->capture_default_str();
   app.add_option("--frames", traffic.frames, "Of --generate")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   app.add_option("--curvature", traffic.curvature_per_m, "Of the generated road [1/m]")
       ->check(CLI::Range(-0.02, 0.02));
-  app.add_option("--rotate", rotate_rad, "Turn the whole scene by this [rad]")
+  app.add_option("--rotate", request.rotate_rad, "Turn the whole scene by this [rad]")
       ->check(CLI::Range(-10.0, 10.0));
-  app.add_option("--out", out_path, "Write the traffic as CSV instead of tracking it");
+  app.add_option("--out", request.out_path, "Write the traffic as CSV instead of tracking it");
   app.add_option("--sigma-position", settings.noise.position_m,
                  "Noise of detections [m], each axis")
       ->check(sigma)
@@ -145,13 +157,16 @@ int main(int argc, char** argv) {
   app.add_option("--skip", settings.skipped_frames, "Frames not scored at the beginning")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
-  KittiRequest kitti;
+  return {file, generate};
+}
+
+CLI::Option* AddKittiOptions(CLI::App& app, const Options& others, KittiRequest& kitti) {
   auto* kitti_option =
       app.add_option("--kitti", kitti.paths,
                      "DET LABEL SEQMAP: 3-D detections (AB3DMOT's columns), labels, sequences")
           ->expected(3)
-          ->excludes(file)
-          ->excludes(generate);
+          ->excludes(others.file)
+          ->excludes(others.generate);
   app.add_option("--poses", kitti.poses,
                  "Of --kitti: folder of NNNN.txt with camera poses, 12 numbers a frame; without it "
                  "the motion is that of labels that stand still")
@@ -161,53 +176,44 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--tracks", kitti.tracks, "Of --kitti: folder to write the tracks to")
       ->needs(kitti_option);
-  app.add_flag("--json", as_json, "Figures as JSON on standard output");
-  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; needs no network")
-      ->check(v2vouch::CheckLcmUrl);
-  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-bench-tracker", argc, argv)) {
-    return *code;
-  }
-  if (kitti_option->count() > 0) {
-    kitti.as_json = as_json;
-    return RunKitti(kitti);
-  }
-  if (file->count() + generate->count() != 1) {
-    std::fprintf(stderr, "v2vouch-bench-tracker: give FILE, --generate N or --kitti\n");
-    return kUsage;
-  }
-  std::uint64_t first = 1, last = 1;
-  if (!ParseSeeds(seeds, first, last) || (!out_path.empty() && first != last)) {
-    std::fprintf(stderr, "v2vouch-bench-tracker: --seeds = %s: a number or FIRST-LAST%s\n",
-                 seeds.c_str(), out_path.empty() ? "" : "; with --out one number");
-    return kUsage;
-  }
+  return kitti_option;
+}
 
+int Fail(const std::string& error) {
+  std::fprintf(stderr, "v2vouch-bench-tracker: %s\n", error.c_str());
+  return kExitFailed;
+}
+
+// The recording that the request names or, for this seed, has generated.
+std::optional<Recording> RecordingOf(Request& request, std::uint64_t seed, std::string& error) {
+  std::optional<Recording> recording;
+  if (request.has_file) {
+    recording = ReadRecording(request.path, error);
+  } else {
+    request.traffic.seed = seed;
+    request.traffic.noise = request.settings.noise;
+    request.traffic.clutter_share = request.settings.clutter_share;
+    request.traffic.detection_probability = request.settings.detection_probability;
+    recording = GenerateTraffic(request.traffic);
+  }
+  if (recording && request.rotate_rad != 0.0) recording = Rotated(*recording, request.rotate_rad);
+  return recording;
+}
+
+int RunSeeds(Request& request, bool as_json) {
+  const std::uint64_t first = request.first_seed;
+  const std::uint64_t last = request.has_file ? first : request.last_seed;
   std::string error;
   BenchFigures total;
-  if (file->count() > 0) last = first;
   for (std::uint64_t seed = first; seed <= last; ++seed) {
-    Recording recording;
-    if (file->count() > 0) {
-      const auto read = ReadRecording(path, error);
-      if (!read) {
-        std::fprintf(stderr, "v2vouch-bench-tracker: %s\n", error.c_str());
-        return kFailed;
-      }
-      recording = *read;
-    } else {
-      traffic.seed = seed;
-      traffic.noise = settings.noise;
-      traffic.clutter_share = settings.clutter_share;
-      traffic.detection_probability = settings.detection_probability;
-      recording = GenerateTraffic(traffic);
+    const auto recording = RecordingOf(request, seed, error);
+    if (!recording) return Fail(error);
+    if (!request.out_path.empty()) {
+      const bool is_written =
+          WriteRecording(*recording, request.out_path, error, std::span(&request.path, 1));
+      return is_written ? kExitGood : Fail(error);
     }
-    if (rotate_rad != 0.0) recording = Rotated(recording, rotate_rad);
-    if (!out_path.empty()) {
-      if (WriteRecording(recording, out_path, error, std::span(&path, 1))) return kGood;
-      std::fprintf(stderr, "v2vouch-bench-tracker: %s\n", error.c_str());
-      return kFailed;
-    }
-    total.Add(RunBench(recording, settings, Now));
+    total.Add(RunBench(*recording, request.settings, Now));
     if (last > first && isatty(STDERR_FILENO) != 0) {
       std::fprintf(stderr, "\rseed %llu of %llu-%llu%s", static_cast<unsigned long long>(seed),
                    static_cast<unsigned long long>(first), static_cast<unsigned long long>(last),
@@ -215,12 +221,43 @@ int main(int argc, char** argv) {
     }
   }
   as_json ? PrintJson(total) : PrintTable(total);
-  if (total.frames == 0) {
-    std::fprintf(stderr,
-                 "v2vouch-bench-tracker: no frame is scored: the recording has at most the %d that "
-                 "--skip leaves out\n",
-                 settings.skipped_frames);
-    return kFailed;
+  if (total.frames > 0) return kExitGood;
+  return Fail("no frame is scored: the recording has at most the " +
+              std::to_string(request.settings.skipped_frames) + " that --skip leaves out");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-bench-tracker");
+  CLI::App app("Runs the tracker core over recorded or generated detections: accuracy and time.");
+  app.footer(kExamples);
+  Request request;
+  std::string lcm_url;
+  bool as_json = false;
+  const Options options = AddTrafficOptions(app, request);
+  const CLI::Option* const kitti = AddKittiOptions(app, options, request.kitti);
+  app.add_flag("--json", as_json, "Figures as JSON on standard output");
+  app.add_option("-l,--lcm-url", lcm_url, "Accepted for uniformity; needs no network")
+      ->check(v2vouch::CheckLcmUrl);
+  if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-bench-tracker", argc, argv)) {
+    return *code;
   }
-  return kGood;
+  if (kitti->count() > 0) {
+    request.kitti.as_json = as_json;
+    return RunKitti(request.kitti);
+  }
+  request.has_file = options.file->count() > 0;
+  if (options.file->count() + options.generate->count() != 1) {
+    std::fprintf(stderr, "v2vouch-bench-tracker: give FILE, --generate N or --kitti\n");
+    return kExitUsage;
+  }
+  const bool writes = !request.out_path.empty();
+  if (!ParseSeeds(request.seeds, request.first_seed, request.last_seed) ||
+      (writes && request.first_seed != request.last_seed)) {
+    std::fprintf(stderr, "v2vouch-bench-tracker: --seeds = %s: a number or FIRST-LAST%s\n",
+                 request.seeds.c_str(), writes ? "; with --out one number" : "");
+    return kExitUsage;
+  }
+  return RunSeeds(request, as_json);
 }

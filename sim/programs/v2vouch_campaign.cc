@@ -7,10 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <set>
 
-#include "daemon/common/base/did_you_mean.h"
-#include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/std_streams.h"
 #include "daemon/rim/program/command_line.h"
 #include "daemon/rim/program/shipped_folder.h"
@@ -18,16 +15,16 @@
 #include "sim/campaign/runner.h"
 #include "sim/campaign/summary.h"
 #include "sim/campaign/targets.h"
-#include "sim/programs/shipped_files.h"
+#include "sim/programs/campaign_jobs.h"
 
 namespace {
 
 using namespace v2vouch::campaign;
 namespace fs = std::filesystem;
 
-constexpr int kGood = 0;
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
+using v2vouch::kExitFailed;
+using v2vouch::kExitGood;
+using v2vouch::kExitUsage;
 constexpr int kNothingToDo = -1;
 
 constexpr const char* kExamples =
@@ -49,18 +46,6 @@ constexpr const char* kExamples =
     "\n"
     "Exit codes: 0 good; 1 a run failed or was stopped, with --gates a target is missed, with\n"
     "--ghosts-only an attacker was published as a ghost; 2 usage.";
-
-struct Options {
-  std::string attacks = "all", honest = "none", shard;
-  std::vector<std::string> scenarios = {"campaign_urban", "campaign_highway"};
-  std::vector<int> densities = {0};
-  int seeds = 1, jobs = 1;
-  std::uint64_t first_seed = 1;
-  std::string out, config, report, lcm_url;
-  std::vector<std::string> merge;
-  bool as_json = false, field = false, keep = false, ghosts_only = false, no_plain = false;
-  bool gates = false;
-};
 
 volatile std::sig_atomic_t stop_asked = 0;
 
@@ -100,62 +85,6 @@ class Progress {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   double next_line_s_ = 60.0;
 };
-
-bool ReadShard(const std::string& text, std::size_t& i, std::size_t& n) {
-  char rest = 0;
-  return std::sscanf(text.c_str(), "%zu/%zu%c", &i, &n, &rest) == 2 && i >= 1 && i <= n;
-}
-
-// No overlay suits any of the scenarios, or none was asked for.
-std::string WhyNothing(const Plan& plan) {
-  if (plan.overlays.empty()) {
-    return "nothing to run: no attack, no honest condition, and --no-plain leaves out the rest";
-  }
-  std::string suits;
-  for (const Overlay& overlay : plan.overlays) {
-    suits += "; " + overlay.name() + " is for";
-    for (const std::string& name : overlay.suits) suits += " " + name;
-  }
-  std::vector<std::string> scenarios = plan.scenarios;
-  return "nothing to run: nothing asked for suits " + v2vouch::Listed(scenarios) + suits;
-}
-
-/// The jobs asked for. Empty with `problems` set where something is wrong.
-std::vector<Job> PlannedJobs(const Options& options, std::vector<std::string>& problems) {
-  std::string problem;
-  const auto files = v2vouch::sim::ShippedOverlays(problem);
-  if (!problem.empty()) problems.push_back(problem);
-  const auto catalogue = ReadCatalogue(files);
-  Plan plan;
-  plan.overlays = Select(options.attacks, Kind::kAttack, catalogue, problems);
-  const auto honest = Select(options.honest, Kind::kHonest, catalogue, problems);
-  plan.overlays.insert(plan.overlays.end(), honest.begin(), honest.end());
-  plan.scenarios = options.scenarios;
-  plan.densities = options.densities;
-  plan.first_seed = options.first_seed;
-  plan.seeds = options.seeds;
-  plan.with_plain = !options.no_plain;
-  for (const std::string& scenario : plan.scenarios) {
-    std::string unknown;
-    v2vouch::sim::FindScenario(scenario, unknown);
-    if (!unknown.empty()) problems.push_back(unknown.substr(0, unknown.size() - 1));
-  }
-  auto jobs = Jobs(plan);
-  std::set<std::string> keys;
-  for (const Job& job : jobs) {
-    if (!keys.insert(job.key()).second) {
-      problems.push_back("two runs would be called " + job.key() + ": rename one of the files");
-      break;
-    }
-  }
-  if (jobs.empty() && problems.empty()) problems.push_back(WhyNothing(plan));
-  std::size_t i = 1, n = 1;
-  if (!options.shard.empty() && !ReadShard(options.shard, i, n)) {
-    problems.push_back("--shard " + options.shard + ": must be I/N, 1 <= I <= N");
-    return {};
-  }
-  return Shard(jobs, i, n);
-}
 
 /// The daemon's configuration a campaign runs with stays that of its folder.
 bool SettleConfig(const fs::path& from, const fs::path& kept, std::string& problem) {
@@ -237,7 +166,7 @@ int RunCampaign(const Options& options) {
     }
   }
   for (const std::string& each : problems) Complain(each);
-  if (!problems.empty()) return kUsage;
+  if (!problems.empty()) return kExitUsage;
 
   if (jobs.empty()) {
     Complain("--shard " + options.shard + " holds none of the runs: nothing to do here");
@@ -256,13 +185,13 @@ int RunCampaign(const Options& options) {
   if (!options.keep && settings.scratch == out / "tmp") fs::remove(settings.scratch, error);
   if (stop_asked != 0) {
     Complain("stopped; what is done is kept, the same call goes on from there");
-    return kFailed;
+    return kExitFailed;
   }
   if (tally.failed > 0) {
     Complain(std::to_string(tally.failed) + " of " +
              std::to_string(tally.total - tally.there_before) + " runs failed");
   }
-  return tally.failed > 0 ? kFailed : kGood;
+  return tally.failed > 0 ? kExitFailed : kExitGood;
 }
 
 int Report(const Options& options) {
@@ -275,7 +204,7 @@ int Report(const Options& options) {
     std::string names;
     for (const fs::path& folder : folders) names += (names.empty() ? "" : ", ") + folder.string();
     Complain("no runs to report: " + names + " holds no runs/*.json of a campaign");
-    return kFailed;
+    return kExitFailed;
   }
   const Summary summary = Summarise(records);
   const std::string figures =
@@ -286,7 +215,7 @@ int Report(const Options& options) {
     const fs::path file = WriteReport(options.report, summary, problem);
     if (file.empty()) {
       Complain(problem);
-      return kFailed;
+      return kExitFailed;
     }
     std::fprintf(stderr, "report: %s\n", file.c_str());
   }
@@ -297,7 +226,7 @@ int Report(const Options& options) {
   if (options.gates) {
     for (const Target& target : JudgeTargets(summary)) is_good &= target.is_met();
   }
-  return is_good ? kGood : kFailed;
+  return is_good ? kExitGood : kExitFailed;
 }
 
 }  // namespace
@@ -309,56 +238,20 @@ int main(int argc, char** argv) {
       "how the daemon fares.");
   app.footer(kExamples);
   Options options;
-  app.add_option("--attacks", options.attacks,
-                 "Ids (A5), variants (A5/lateral_8m), YAML files, all or none; comma-separated")
-      ->capture_default_str();
-  app.add_option("--honest", options.honest, "Honest conditions, likewise")->capture_default_str();
-  app.add_option("--scenarios", options.scenarios, "Shipped names or YAML files")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--densities", options.densities,
-                 "Vehicles of traffic (traffic.vehicles); 0 = as the scenario says")
-      ->delimiter(',')
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  app.add_option("--seeds", options.seeds, "Seeds per combination")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  app.add_option("--first-seed", options.first_seed)->capture_default_str();
-  app.add_option("--jobs", options.jobs, "Runs at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("--shard", options.shard, "I/N: every N-th run from the I-th on");
-  auto* out = app.add_option("--out", options.out, "Folder of the campaign");
-  app.add_option("--merge", options.merge, "Report the runs of these folders; runs nothing")
-      ->excludes(out);
-  app.add_option("--config", options.config, "Vehicle description of the daemon")
-      ->check(CLI::ExistingFile);
-  app.add_flag("--field", options.field,
-               "Also the paper's method and message-only checks, on the same runs");
-  app.add_flag("--ghosts-only", options.ghosts_only,
-               "Short form: --attacks A1,A2,A3,A4 --honest none --no-plain");
-  app.add_flag("--no-plain", options.no_plain,
-               "Leave out the runs without attack (LOCAL is then not compared)");
-  app.add_flag("--gates", options.gates, "Exit code 1 when a target is missed or not measured");
-  app.add_flag("--keep", options.keep, "Keep the log files, in OUT/tmp");
-  app.add_option("--report", options.report, "Folder for index.html (made if absent)");
-  app.add_flag("--json", options.as_json, "Figures as JSON on standard output");
-  app.add_option("-l,--lcm-url", options.lcm_url, "Accepted for uniformity; nothing goes over LCM")
-      ->check(v2vouch::CheckLcmUrl);
+  AddOptions(app, options);
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-campaign", argc, argv)) return *code;
   if (options.out.empty() == options.merge.empty()) {
     Complain("give --out DIR (or --merge DIR...)");
-    return kUsage;
+    return kExitUsage;
   }
   if (options.ghosts_only) {
     options.attacks = "A1,A2,A3,A4";
     options.honest = "none";
     options.no_plain = true;
   }
-  const int ran = options.out.empty() ? kGood : RunCampaign(options);
-  if (ran == kNothingToDo) return kGood;
-  if (ran == kUsage || stop_asked != 0) return ran;
+  const int ran = options.out.empty() ? kExitGood : RunCampaign(options);
+  if (ran == kNothingToDo) return kExitGood;
+  if (ran == kExitUsage || stop_asked != 0) return ran;
   const int reported = Report(options);
   return std::max(ran, reported);
 }

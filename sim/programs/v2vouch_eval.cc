@@ -14,14 +14,11 @@
 #include "sim/report/log_report.h"
 #include "sim/report/report.h"
 #include "sim/report/scorecard_text.h"
+#include "sim/run_log/why_not_judged.h"
 #include "sim/spoofing/spoof_json.h"
 #include "sim/warnings/judge_warnings.h"
 
 namespace {
-
-constexpr int kGood = 0;
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
 
 constexpr const char* kExamples =
     "Examples:\n"
@@ -47,7 +44,7 @@ constexpr const char* kExamples =
 
 int Complain(const std::string& what) {
   std::fprintf(stderr, "v2vouch-eval: %s\n", what.c_str());
-  return kFailed;
+  return v2vouch::kExitFailed;
 }
 
 /// Shows the share done on a terminal; says nothing elsewhere.
@@ -90,7 +87,7 @@ std::vector<v2vouch::evaluation::ReportPicture> PicturesOf(const std::string& lo
 int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
   using namespace v2vouch::evaluation;
   RunLog log;
-  if (!Load(path, log, ReadScope::kSpoof)) return kFailed;
+  if (!Load(path, log, ReadScope::kSpoof)) return v2vouch::kExitFailed;
   if (const std::string why = WhyNotJudged(log); !log.truth.empty() && !why.empty()) {
     return Complain(path + ": " + why);
   }
@@ -102,11 +99,11 @@ int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
   if (missing != nullptr) {
     std::fprintf(stderr, "v2vouch-eval: %s holds no %s, so spoofing cannot be judged.\n",
                  path.c_str(), missing);
-    return kFailed;
+    return v2vouch::kExitFailed;
   }
   const SpoofRun run = JudgeSpoof(log, with_message_checks);
   std::fputs((as_json ? SpoofJson(run) : SpoofTable(run)).c_str(), stdout);
-  return kGood;
+  return v2vouch::kExitGood;
 }
 
 // What became of each BSM, where the log says so; null where it cannot be judged.
@@ -124,7 +121,7 @@ int PutReport(const std::string& folder, const std::string& html, const std::str
   const std::string file = v2vouch::evaluation::WritePage(folder, html, error);
   if (file.empty()) return Complain(error);
   std::fprintf(stderr, "%s\nreport: %s\n", story.c_str(), file.c_str());
-  return kGood;
+  return v2vouch::kExitGood;
 }
 
 int PrintWarnings(const std::string& path, bool as_json) {
@@ -134,7 +131,7 @@ int PrintWarnings(const std::string& path, bool as_json) {
   if (!RunWarnings(path, {}, run, error)) return Complain(path + ": " + error);
   const WarnScore score = JudgeWarnings(run);
   std::fputs((as_json ? WarnScoreJson(score) : WarnScoreTable(score)).c_str(), stdout);
-  return kGood;
+  return v2vouch::kExitGood;
 }
 
 int PrintSummary(const std::string& path, const v2vouch::evaluation::RunLog& log, bool as_json) {
@@ -142,7 +139,7 @@ int PrintSummary(const std::string& path, const v2vouch::evaluation::RunLog& log
   std::fputs((as_json ? ListSummaryJson(log) : ListSummary(log)).c_str(), stdout);
   const bool has_lists =
       std::ranges::any_of(log.lists, [](const auto& lists) { return !lists.empty(); });
-  if (has_lists) return kGood;
+  if (has_lists) return v2vouch::kExitGood;
   if (!log.other_types.empty()) return Complain(path + ": " + OtherTypesText(log.other_types));
   return Complain(path + ": holds no track lists; `v2vouch-replay LOG --out OUT` makes them");
 }
@@ -155,7 +152,7 @@ int ReportWithoutTruth(const std::string& path, const v2vouch::evaluation::RunLo
   if (!ReadLogFacts(path, facts, error)) return Complain(error);
   const int code =
       PutReport(folder, LogReportHtml(log, facts, PicturesOf(path)), StoryWithoutTruth(log));
-  return code != kGood ? code : PrintSummary(path, log, as_json);
+  return code != v2vouch::kExitGood ? code : PrintSummary(path, log, as_json);
 }
 
 int PrintScorecards(const v2vouch::evaluation::RunLog& log,
@@ -165,7 +162,7 @@ int PrintScorecards(const v2vouch::evaluation::RunLog& log,
   card.cutoff_m = settings.cutoff_m;
   const Scorecards cards = JudgeScorecards(log, card);
   std::fputs((as_json ? ScorecardFileJson(log, cards) : ScorecardTable(cards)).c_str(), stdout);
-  return kGood;
+  return v2vouch::kExitGood;
 }
 
 struct Options {
@@ -226,10 +223,10 @@ int main(int argc, char** argv) {
   if (options.warnings) return PrintWarnings(log_path, options.as_json);
   if (options.spoof) return JudgeLies(log_path, options.message_checks, options.as_json);
   RunLog log;
-  if (!Load(log_path, log)) return kFailed;
+  if (!Load(log_path, log)) return v2vouch::kExitFailed;
   for (std::size_t k = 0; k < options.joined.size(); ++k) {
     RunLog other;
-    if (!Load(options.joined[k], other)) return kFailed;
+    if (!Load(options.joined[k], other)) return v2vouch::kExitFailed;
     JoinLocal(other, static_cast<int>(k + 1), log);
   }
   if (options.summary) return PrintSummary(log_path, log, options.as_json);
@@ -244,7 +241,7 @@ int main(int argc, char** argv) {
   std::unique_ptr<Evaluation> paper;
   if (!options.paper_path.empty()) {
     RunLog paper_log;
-    if (!Load(options.paper_path, paper_log)) return kFailed;
+    if (!Load(options.paper_path, paper_log)) return v2vouch::kExitFailed;
     if (const std::string why = WhyNotJudged(paper_log); !why.empty()) {
       return Complain(options.paper_path + ": " + why);
     }
@@ -258,15 +255,15 @@ int main(int argc, char** argv) {
     const std::string html =
         ReportHtml(*evaluation, paper.get(), PicturesOf(log_path), liars.get(), &facts);
     const int code = PutReport(options.report_folder, html, Story(*evaluation, liars.get()));
-    if (code != kGood) return code;
+    if (code != v2vouch::kExitGood) return code;
   }
   const std::string figures =
       options.as_json ? ToJson(*evaluation, paper.get()) : ToTable(*evaluation, paper.get());
   std::fputs(figures.c_str(), stdout);
   if (options.use_gates) {
     for (const Gate& gate : evaluation->gates) {
-      if (!gate.passes()) return kFailed;
+      if (!gate.passes()) return v2vouch::kExitFailed;
     }
   }
-  return kGood;
+  return v2vouch::kExitGood;
 }

@@ -22,9 +22,6 @@
 namespace v2vouch::sim {
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
-
 constexpr const char* kExamples = R"(Examples:
   v2vouch-import comma2k19 DRIVE --out drive.lcm
       DRIVE holds radar_tracks.csv, ego_speed.csv, imu_fwd_right_down.csv, gnss_ublox.csv.
@@ -231,6 +228,6 @@ int main(int argc, char** argv) {
     return v2vouch::sim::Run(argc, argv);
   } catch (const std::exception& error) {  // Out of memory, a disk that vanished.
     std::fprintf(stderr, "v2vouch-import: %s\n", error.what());
-    return v2vouch::sim::kFailed;
+    return v2vouch::kExitFailed;
   }
 }

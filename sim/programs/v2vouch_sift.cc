@@ -12,9 +12,6 @@
 
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
-
 constexpr const char* kExamples =
     "Examples:\n"
     "  v2vouch-sift drive.lcm --config vehicle.yaml --rung existence --out sifted.lcm\n"
@@ -55,7 +52,7 @@ int main(int argc, char** argv) {
     for (const std::string& problem : problems) {
       std::fprintf(stderr, "v2vouch-sift: %s\n", problem.c_str());
     }
-    return kUsage;
+    return v2vouch::kExitUsage;
   }
   const Rung which = rung == "existence"     ? Rung::kExistence
                      : rung == "association" ? Rung::kAssociation
@@ -66,5 +63,5 @@ int main(int argc, char** argv) {
   for (const std::string& path : written) std::printf("%s\n", path.c_str());
   if (is_good) return 0;
   std::fprintf(stderr, "v2vouch-sift: %s\n", error.c_str());
-  return kFailed;
+  return v2vouch::kExitFailed;
 }

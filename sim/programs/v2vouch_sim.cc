@@ -17,8 +17,6 @@
 namespace v2vouch::sim {
 namespace {
 
-constexpr int kUsage = 2;
-
 constexpr const char* kExamples = R"(Examples:
   v2vouch-sim list
   v2vouch-sim run left_turn --seed 1 --out left_turn.lcm
@@ -65,7 +63,7 @@ int List(bool as_json) {
   if (as_json) {
     const nlohmann::ordered_json all = {{"scenarios", scenarios}, {"catalogue", catalogue}};
     std::printf("%s\n", all.dump().c_str());
-    return problems.empty() ? 0 : kUsage;
+    return problems.empty() ? 0 : kExitUsage;
   }
   const auto text = [](const nlohmann::ordered_json& entry, const char* key) {
     return entry[key].get<std::string>();
@@ -78,7 +76,7 @@ int List(bool as_json) {
   for (const auto& entry : catalogue) {
     std::printf("%-26s  %s\n", text(entry, "name").c_str(), text(entry, "description").c_str());
   }
-  return problems.empty() ? 0 : kUsage;
+  return problems.empty() ? 0 : kExitUsage;
 }
 
 }  // namespace
@@ -122,13 +120,13 @@ int main(int argc, char** argv) {
   if (*list) return List(as_json);
   if (options.out.empty() && !options.live) {
     std::fprintf(stderr, "v2vouch-sim: one of --out LOG.lcm and --live is needed\n");
-    return kUsage;
+    return v2vouch::kExitUsage;
   }
   const std::string url_problem =
       options.live ? v2vouch::CheckLcmUrl(v2vouch::EffectiveLcmUrl(options.lcm_url)) : "";
   if (!url_problem.empty()) {
     std::fprintf(stderr, "v2vouch-sim: %s\n", url_problem.c_str());
-    return kUsage;
+    return v2vouch::kExitUsage;
   }
   std::string problem;
   options.scenario = FindScenario(scenario, problem);
@@ -137,7 +135,7 @@ int main(int argc, char** argv) {
   }
   if (!problem.empty()) {
     std::fprintf(stderr, "v2vouch-sim: %s", problem.c_str());
-    return kUsage;
+    return v2vouch::kExitUsage;
   }
   if (!sensors.empty()) options.settings.push_back("sensors.mode=" + sensors);
   return Run(options);

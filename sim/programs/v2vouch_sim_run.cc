@@ -24,9 +24,6 @@
 namespace v2vouch::sim {
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
-
 void Complain(const std::string& what) { std::fprintf(stderr, "v2vouch-sim: %s\n", what.c_str()); }
 
 // "a.b=c" as YAML: a section holding a section holding c.
@@ -175,18 +172,18 @@ int Run(const RunOptions& options) {
   }
   if (!world) {
     for (const std::string& problem : problems) Complain(problem);
-    return kUsage;
+    return kExitUsage;
   }
   std::string error;
   if (!options.vehicle_out.empty() &&
       !WriteVehicle(world->scenario(), options.vehicle_out, error)) {
     Complain(error);
-    return kFailed;
+    return kExitFailed;
   }
   const auto sink = OpenSink(options, error);
   if (!sink) {
     Complain(error);
-    return kFailed;
+    return kExitFailed;
   }
   HandleStopSignals();
 
@@ -219,7 +216,7 @@ int Run(const RunOptions& options) {
                {counts, unsent, simulation.progress() * scenario.duration_s, wall});
   if (!finished) Complain(error);
   if (options.live && unsent > 0) Complain(std::to_string(unsent) + " messages could not be sent");
-  return finished && unsent == 0 ? 0 : kFailed;
+  return finished && unsent == 0 ? 0 : kExitFailed;
 }
 
 }  // namespace v2vouch::sim

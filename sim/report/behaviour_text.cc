@@ -16,12 +16,6 @@ constexpr std::array kSightings = {Sighting::kVisible, Sighting::kHidden, Sighti
 constexpr std::array kSightingKeys = {"visible", "hidden", "out_of_view"};
 constexpr std::array kSightingNames = {"visible", "hidden", "out of view"};
 
-std::string Line(const char* format, auto... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 Json VisibilityJson(const VisibilityTable& table) {
   Json json = {{"samples", table.total()}, {"share_right", Rounded(table.share_right())}};
   for (std::size_t said = 0; said < 3; ++said) {

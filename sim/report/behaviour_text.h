@@ -27,4 +27,11 @@ std::string WithUnit(double value, int digits, const char* unit);
 /// Six significant digits: enough to compare, and the same bytes from run to run.
 double Rounded(double value);
 
+/// One line of text, as printf makes it.
+std::string Line(const char* format, auto... values) {
+  char text[320];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
 }  // namespace v2vouch::evaluation

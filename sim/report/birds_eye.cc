@@ -3,18 +3,15 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
 #include "sim/metrics/placing.h"
 #include "sim/plot/svg.h"
+#include "sim/report/picture_labels.h"
 
 namespace v2vouch::evaluation {
 namespace {
-
-constexpr double kWidth = 346.0;
-constexpr double kTitle = 24.0;
 
 const std::string kTruthStyle =
     std::string("fill=\"#ffffff\" stroke=\"") + colour::kInk + "\" stroke-width=\"1\"";
@@ -119,73 +116,6 @@ void DrawTruth(Svg& svg, const Evaluation& evaluation, const Window& window, Tim
                     (sighting == Sighting::kHidden ? colour::kAlarm : colour::kInk) +
                     "\" fill-opacity=\"0.55\"");
   }
-}
-
-/// A rectangle of the picture.
-struct Area {
-  double left, top, right, bottom;
-  [[nodiscard]] double Overlap(const Area& other) const {
-    return std::max(0.0, std::min(right, other.right) - std::max(left, other.left)) *
-           std::max(0.0, std::min(bottom, other.bottom) - std::max(top, other.top));
-  }
-};
-
-/// Puts names beside their vehicles, where they cover the least of other names and vehicles.
-class Labels {
- public:
-  explicit Labels(double height) : picture_{0.0, kTitle, kWidth, kTitle + height} {}
-  /// A vehicle; its tracks are drawn somewhat larger.
-  void Avoid(const Area& area) {
-    constexpr double kMargin = 4.0;
-    taken_.push_back(
-        {area.left - kMargin, area.top - kMargin, area.right + kMargin, area.bottom + kMargin});
-  }
-
-  void Draw(Svg& svg, const Area& vehicle, const std::string& name, const char* style,
-            double letter_px) {
-    const double width = letter_px * static_cast<double>(name.size());
-    const double height = 1.7 * letter_px;
-    const double x = 0.5 * (vehicle.left + vehicle.right);
-    const double y = 0.5 * (vehicle.top + vehicle.bottom);
-    constexpr double kGap = 6.0;
-    const auto at = [&](double left, double top) {
-      return Area{left, top, left + width, top + height};
-    };
-    const std::array candidates = {at(vehicle.right + kGap, y - height / 2),
-                                   at(vehicle.left - kGap - width, y - height / 2),
-                                   at(x - width / 2, vehicle.top - height - 4.0),
-                                   at(x - width / 2, vehicle.bottom + 4.0),
-                                   at(vehicle.right + kGap, vehicle.top - height),
-                                   at(vehicle.left - kGap - width, vehicle.top - height),
-                                   at(vehicle.right + kGap, vehicle.bottom),
-                                   at(vehicle.left - kGap - width, vehicle.bottom)};
-    const Area* best = &candidates[0];
-    double least = 1e9;
-    for (const Area& candidate : candidates) {
-      const double outside = width * height - candidate.Overlap(picture_);
-      double covered = outside;
-      for (const Area& taken : taken_) covered += candidate.Overlap(taken);
-      if (covered < least - 0.5) {
-        least = covered;
-        best = &candidate;
-      }
-    }
-    svg.Text(best->left, best->bottom - 0.25 * height, name, std::string("class=\"") + style + '"');
-    taken_.push_back(*best);
-  }
-
- private:
-  Area picture_;
-  std::vector<Area> taken_;
-};
-
-Area AreaOf(const std::vector<Eigen::Vector2d>& points) {
-  Area area{points[0].x(), points[0].y(), points[0].x(), points[0].y()};
-  for (const Eigen::Vector2d& p : points) {
-    area = {std::min(area.left, p.x()), std::min(area.top, p.y()), std::max(area.right, p.x()),
-            std::max(area.bottom, p.y())};
-  }
-  return area;
 }
 
 /// Names of the vehicles, drawn last so that nothing covers them; the critical one's first, as it

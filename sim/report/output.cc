@@ -84,45 +84,6 @@ Json ListsJson(const std::vector<ListScore>& scores, bool is_full) {
   return json;
 }
 
-struct ListCounts {
-  std::size_t lists = 0;
-  std::size_t stale = 0;
-  std::size_t distinct_tracks = 0;
-  double tracks_mean = kNoValue;
-  double longest_s = kNoValue;
-  double seconds = kNoValue;
-};
-
-ListCounts CountList(const std::vector<ReceivedList>& lists) {
-  ListCounts counts;
-  counts.lists = lists.size();
-  std::map<std::int64_t, std::pair<Timestamp, Timestamp>> lives;
-  double tracks = 0.0;
-  for (const ReceivedList& list : lists) {
-    counts.stale += list.is_stale ? 1 : 0;
-    tracks += static_cast<double>(list.tracks.size());
-    for (const ListedTrack& track : list.tracks) {
-      const auto [life, is_new] = lives.try_emplace(track.id, list.stamp, list.stamp);
-      life->second.second = list.stamp;
-    }
-  }
-  counts.distinct_tracks = lives.size();
-  for (const auto& [id, life] : lives) {
-    counts.longest_s = std::fmax(counts.longest_s, ToSeconds(life.second - life.first));
-  }
-  if (!lists.empty()) {
-    counts.tracks_mean = tracks / static_cast<double>(lists.size());
-    counts.seconds = ToSeconds(lists.back().stamp - lists.front().stamp);
-  }
-  return counts;
-}
-
-std::string Line(const char* format, auto... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 void AppendScores(std::string& out, const char* title, const std::vector<ListScore>& scores) {
   out += Line("\n%s\n", title);
   out += "  list       GOSPA   (RMS)   local.  missed   false  switch |   bound   ratio\n";
@@ -133,6 +94,65 @@ void AppendScores(std::string& out, const char* title, const std::vector<ListSco
                 Fixed(s.false_mean, 3).c_str(), Fixed(s.switching_mean, 3).c_str(),
                 Fixed(s.bound_mean, 3).c_str(), Fixed(s.ratio(), 2).c_str());
   }
+}
+
+std::string GatesTable(const Evaluation& evaluation) {
+  std::string out;
+  out +=
+      "\nthe paper's own table (its scenario, c = 30): GOSPA local 56.12, V2V 7.517, "
+      "priority 48.62\n\ngates\n";
+  for (const Gate& gate : evaluation.gates) {
+    out += Line("  %-4s %-30s %8s  (at most %g)\n", gate.passes() ? "ok" : "MISS",
+                gate.name.c_str(), Fixed(gate.value, 4).c_str(), gate.limit);
+  }
+  return out;
+}
+
+std::string FindingsText(const Evaluation& evaluation) {
+  const ListScore& local = evaluation.headline(ListKind::kLocal);
+  const ListScore& priority = evaluation.headline(ListKind::kPriority);
+  std::string out;
+  out += "\nLOCAL's localisation over the bound of extended vehicles of unknown size: " +
+         Fixed(local.localisation_extended_ratio, 3);
+  out += "\nin PRIORITY while hidden: " + UnseenText(evaluation.hidden) +
+         "\nin PRIORITY while out of view: " + UnseenText(evaluation.out_of_view) +
+         "\nvalidated share " + WithUnit(100.0 * evaluation.validated_share, 1, " %") +
+         Line("; switches LOCAL %d, PRIORITY %d\n", local.switches, priority.switches);
+  out += "ANEES (ideal 2; 95 % band)\n";
+  for (const ListScore* score : {&local, &priority}) {
+    out += Line("  %-8s visible ", ListTitle(score->kind)) + AneesText(score->visible) +
+           "; hidden " + AneesText(score->hidden) + "; out of view " +
+           AneesText(score->out_of_view) + "\n";
+  }
+  return out;
+}
+
+std::string TrajectoriesText(const Evaluation& evaluation) {
+  const ListScore& local = evaluation.headline(ListKind::kLocal);
+  const ListScore& priority = evaluation.headline(ListKind::kPriority);
+  std::string out;
+  out += Line("T-GOSPA per instant: LOCAL %s, PRIORITY %s%s\n",
+              Fixed(local.trajectory_per_step, 3).c_str(),
+              Fixed(priority.trajectory_per_step, 3).c_str(),
+              local.trajectory.is_exact && priority.trajectory.is_exact ? "" : " (upper bounds)");
+  out += "seconds in PRIORITY:";
+  for (const auto& [id, seconds] : evaluation.hold_s) {
+    out += Line(" %lld: %.1f", static_cast<long long>(id), seconds);
+  }
+  if (evaluation.hold_s.empty()) out += " none";
+  return out;
+}
+
+std::string MissesText(const Evaluation& evaluation) {
+  std::string out;
+  out += "\nmissed by PRIORITY though the bound holds it (vehicle, reason, seconds, from):\n";
+  for (const Miss& miss : evaluation.misses) {
+    out += Line("  %lld %s%s%s %.1f s from %.1f s\n", static_cast<long long>(miss.vehicle),
+                MissReasonKey(miss.reason), miss.check.empty() ? "" : " ", miss.check.c_str(),
+                miss.seconds, miss.first_s);
+  }
+  if (evaluation.misses.empty()) out += "  none\n";
+  return out;
 }
 
 }  // namespace
@@ -185,7 +205,6 @@ std::string ToJson(const Evaluation& evaluation, const Evaluation* paper) {
 std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
   std::string out;
   const ListScore& local = evaluation.headline(ListKind::kLocal);
-  const ListScore& priority = evaluation.headline(ListKind::kPriority);
   out += Line("%s, %.1f s, %zu instants at 20 Hz, p = 2, disc of %.0f m%s\n",
               evaluation.log.specs.name.empty() ? "run" : evaluation.log.specs.name.c_str(),
               evaluation.duration_s, local.series.size(), evaluation.settings.radius_m,
@@ -206,76 +225,10 @@ std::string ToTable(const Evaluation& evaluation, const Evaluation* paper) {
                      .c_str(),
                  paper->cutoffs.front().own);
   }
-  out +=
-      "\nthe paper's own table (its scenario, c = 30): GOSPA local 56.12, V2V 7.517, "
-      "priority 48.62\n\ngates\n";
-  for (const Gate& gate : evaluation.gates) {
-    out += Line("  %-4s %-30s %8s  (at most %g)\n", gate.passes() ? "ok" : "MISS",
-                gate.name.c_str(), Fixed(gate.value, 4).c_str(), gate.limit);
-  }
-  out += "\nLOCAL's localisation over the bound of extended vehicles of unknown size: " +
-         Fixed(local.localisation_extended_ratio, 3);
-  out += "\nin PRIORITY while hidden: " + UnseenText(evaluation.hidden) +
-         "\nin PRIORITY while out of view: " + UnseenText(evaluation.out_of_view) +
-         "\nvalidated share " + WithUnit(100.0 * evaluation.validated_share, 1, " %") +
-         Line("; switches LOCAL %d, PRIORITY %d\n", local.switches, priority.switches);
-  out += "ANEES (ideal 2; 95 % band)\n";
-  for (const ListScore* score : {&local, &priority}) {
-    out += Line("  %-8s visible ", ListTitle(score->kind)) + AneesText(score->visible) +
-           "; hidden " + AneesText(score->hidden) + "; out of view " +
-           AneesText(score->out_of_view) + "\n";
-  }
+  out += GatesTable(evaluation) + FindingsText(evaluation);
   out += BehaviourTable(evaluation.behaviour);
   out += ScorecardTable(evaluation.scorecards);
-  out += Line("T-GOSPA per instant: LOCAL %s, PRIORITY %s%s\n",
-              Fixed(local.trajectory_per_step, 3).c_str(),
-              Fixed(priority.trajectory_per_step, 3).c_str(),
-              local.trajectory.is_exact && priority.trajectory.is_exact ? "" : " (upper bounds)");
-  out += "seconds in PRIORITY:";
-  for (const auto& [id, seconds] : evaluation.hold_s) {
-    out += Line(" %lld: %.1f", static_cast<long long>(id), seconds);
-  }
-  if (evaluation.hold_s.empty()) out += " none";
-  out += "\nmissed by PRIORITY though the bound holds it (vehicle, reason, seconds, from):\n";
-  for (const Miss& miss : evaluation.misses) {
-    out += Line("  %lld %s%s%s %.1f s from %.1f s\n", static_cast<long long>(miss.vehicle),
-                MissReasonKey(miss.reason), miss.check.empty() ? "" : " ", miss.check.c_str(),
-                miss.seconds, miss.first_s);
-  }
-  if (evaluation.misses.empty()) out += "  none\n";
-  return out;
-}
-
-std::string ListSummaryJson(const RunLog& log) {
-  Json json;
-  json["has_truth"] = !log.truth.empty();
-  json["log_seconds"] = Rounded(log.log_seconds);
-  json["events"] = log.events;
-  for (const ListKind kind : kLists) {
-    const ListCounts counts = CountList(log.lists[Index(kind)]);
-    json["lists"][ListKey(kind)] = {{"lists", counts.lists},
-                                    {"stale", counts.stale},
-                                    {"seconds", Rounded(counts.seconds)},
-                                    {"tracks_mean", Rounded(counts.tracks_mean)},
-                                    {"distinct_tracks", counts.distinct_tracks},
-                                    {"longest_track_s", Rounded(counts.longest_s)}};
-  }
-  return json.dump(1) + "\n";
-}
-
-std::string ListSummary(const RunLog& log) {
-  std::string out =
-      Line("%.1f s of log, %lld events%s\n", log.log_seconds, static_cast<long long>(log.events),
-           log.truth.empty() ? "; no truth, so nothing can be judged" : "");
-  out += "  list       lists  stale  seconds  tracks at a time  distinct  longest [s]\n";
-  for (const ListKind kind : kLists) {
-    const ListCounts counts = CountList(log.lists[Index(kind)]);
-    out +=
-        Line("  %-8s %7zu %6zu %8s %17s %9zu %12s\n", ListTitle(kind), counts.lists, counts.stale,
-             Fixed(counts.seconds, 1).c_str(), Fixed(counts.tracks_mean, 2).c_str(),
-             counts.distinct_tracks, Fixed(counts.longest_s, 1).c_str());
-  }
-  return out;
+  return out + TrajectoriesText(evaluation) + MissesText(evaluation);
 }
 
 }  // namespace v2vouch::evaluation

@@ -119,12 +119,6 @@ Json CardJson(const Scorecard& card) {
   return json;
 }
 
-std::string Line(const char* format, auto... values) {
-  char text[320];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 std::string Rms(const Sample& sample) { return Fixed(sample.Rms(), 2); }
 
 std::string NeesText(const ConsistencyFigures& figures) {

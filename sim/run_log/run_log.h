@@ -127,14 +127,6 @@ struct RunLog {
   static constexpr Duration kLongestPause = std::chrono::minutes(10);
 };
 
-/// One sentence for people about RunLog::other_types, and what to do.
-std::string OtherTypesText(const std::map<std::string, std::int64_t>& other_types);
-
-/// Why this run cannot be judged against its truth, with what to do about it; "" where it can:
-/// TRUTH and lists are there, overlap in time, and TRUTH's time runs on without a step (the grid
-/// that the run is judged on has an instant for every 50 ms of it).
-std::string WhyNotJudged(const RunLog& log);
-
 enum class ReadScope {
   kAll,    ///< Everything but the messages' truths and verdicts.
   kSpoof,  ///< What spoof scoring needs: those too, and PRIORITY as the only list.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/common/data/object_class.h"
 #include "sim/sensors/subject.h"
 
 namespace v2vouch::sim {
@@ -12,77 +11,7 @@ namespace {
 
 constexpr double kRay_rad = FromDegrees(0.05);
 
-// Half of the span the rays must cover: the picture's wider side, and a margin.
-double HalfSpan(const CameraConfig& camera) {
-  const double side = std::max(camera.cx_px, camera.image_width_px - camera.cx_px);
-  return std::min(FromDegrees(85.0), std::atan(side / camera.fx_px) * 1.05);
-}
-
-ObjectClass Confused(ObjectClass object_class) {
-  switch (object_class) {
-    case ObjectClass::kCar:
-      return ObjectClass::kVan;
-    case ObjectClass::kVan:
-      return ObjectClass::kCar;
-    case ObjectClass::kTruck:
-      return ObjectClass::kBus;
-    case ObjectClass::kBus:
-      return ObjectClass::kTruck;
-    case ObjectClass::kMotorcycle:
-      return ObjectClass::kCyclist;
-    case ObjectClass::kCyclist:
-      return ObjectClass::kMotorcycle;
-    default:
-      return object_class;
-  }
-}
-
-Eigen::Vector2d Distorted(const CameraConfig& camera, double x, double y) {
-  if (camera.distortion.empty()) return {x, y};
-  const auto k = [&](std::size_t i) {
-    return i < camera.distortion.size() ? camera.distortion[i] : 0.0;
-  };
-  const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (k(0) + r2 * (k(1) + r2 * k(4)));
-  return {x * radial + 2.0 * k(2) * x * y + k(3) * (r2 + 2.0 * x * x),
-          y * radial + k(2) * (r2 + 2.0 * y * y) + 2.0 * k(3) * x * y};
-}
-
-void SetClass(ObjectClass object_class, camera_box_t& box) {
-  box.class_id = static_cast<std::int32_t>(object_class);
-  box.class_name = ObjectClassName(object_class);
-}
-
 }  // namespace
-
-std::optional<Eigen::Vector2d> Project(const CameraConfig& camera, const Eigen::Vector3d& p_B,
-                                       double extra_pitch_rad) {
-  const Eigen::Vector3d d = p_B - Eigen::Vector3d(camera.x_m, camera.y_m, camera.z_m);
-  const double cy = std::cos(camera.yaw_rad);
-  const double sy = std::sin(camera.yaw_rad);
-  const double ahead = cy * d.x() + sy * d.y();
-  const double left = -sy * d.x() + cy * d.y();
-  const double cp = std::cos(camera.pitch_rad + extra_pitch_rad);
-  const double sp = std::sin(camera.pitch_rad + extra_pitch_rad);
-  const double forward = cp * ahead - sp * d.z();
-  const double up = sp * ahead + cp * d.z();
-  const double cr = std::cos(camera.roll_rad);
-  const double sr = std::sin(camera.roll_rad);
-  const double right_C = cr * -left + sr * -up;  // Right side rolled down.
-  const double down_C = cr * -up - sr * -left;
-  if (forward < 0.2) return std::nullopt;
-  const Eigen::Vector2d ray = Distorted(camera, right_C / forward, down_C / forward);
-  return Eigen::Vector2d(camera.cx_px + camera.fx_px * ray.x(),
-                         camera.cy_px + camera.fy_px * ray.y());
-}
-
-void CameraSimulator::PixelBox::Add(const Eigen::Vector2d& pixel) {
-  left = std::min(left, pixel.x());
-  right = std::max(right, pixel.x());
-  top = std::min(top, pixel.y());
-  bottom = std::max(bottom, pixel.y());
-  is_empty = false;
-}
 
 CameraSimulator::CameraSimulator(const World& world, int index, std::uint64_t seed)
     : world_(world),
@@ -214,47 +143,6 @@ std::optional<camera_box_t> CameraSimulator::PointBox(const EgoTruth& ego, const
   return box;
 }
 
-std::optional<camera_box_t> CameraSimulator::VehicleBox(const Seen& seen, ObjectClass object_class,
-                                                        Random& random) const {
-  const double sigma = sigma_px();
-  const double width = camera_.image_width_px;
-  const double height = camera_.image_height_px;
-  camera_box_t box{};
-  const auto edge = [&](double exact, double low, double high) {
-    const double noise = random.Normal(0.0, sigma);  // Drawn always: order stays fixed.
-    if (exact <= low) return low;
-    if (exact >= high) return high;
-    return std::clamp(exact + noise, low, high);
-  };
-  box.left_px = edge(seen.box.left, 0.0, width);
-  box.top_px = edge(seen.box.top, 0.0, height);
-  box.width_px = edge(seen.box.right, 0.0, width) - box.left_px;
-  box.height_px = edge(seen.box.bottom, 0.0, height) - box.top_px;
-  const double size = std::clamp(box.height_px / 60.0, 0.0, 1.0);
-  box.score =
-      std::clamp(0.5 + 0.25 * size + 0.2 * seen.sight.visible_fraction + random.Normal(0.0, 0.05),
-                 std::min(0.99, camera_.min_score + 0.02), 0.99);
-  if (random.Bernoulli(0.03 + 0.07 * (1.0 - size))) object_class = Confused(object_class);
-  if (box.width_px < 3.0 || box.height_px < 4.0) return std::nullopt;
-  SetClass(object_class, box);
-  return box;
-}
-
-// Posters, shadows, bins: near the horizon, vehicle-shaped.
-camera_box_t CameraSimulator::ClutterBox(Random& random) const {
-  const double width = camera_.image_width_px;
-  const double height = camera_.image_height_px;
-  camera_box_t box{};
-  box.height_px = random.Uniform(12.0, 0.12 * height);
-  box.width_px = box.height_px * random.Uniform(0.8, 2.0);
-  box.left_px = random.Uniform(0.0, width - box.width_px);
-  box.top_px =
-      std::clamp(camera_.cy_px + random.Uniform(-0.05, 0.1) * height, 0.0, height - box.height_px);
-  box.score = std::min(0.99, camera_.min_score + random.Uniform(0.0, 0.3));
-  SetClass(ObjectClass::kCar, box);
-  return box;
-}
-
 void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
                             camera_detections_t& picture) {
   const SensorsSpec& sensors = world_.scenario().sensors;
@@ -277,62 +165,24 @@ void CameraSimulator::Shoot(const Snapshot& snapshot, std::int64_t seq,
                                   {index_, static_cast<std::uint64_t>(seq), actor.actor->id});
     if (!random.Bernoulli(seen.sight.detection_probability)) continue;
     const auto box = ideal ? PointBox(snapshot.ego, actor, nod, random)
-                           : VehicleBox(seen, actor.actor->object_class, random);
+                           : VehicleBox(camera_, sigma_px(), seen.box, seen.sight.visible_fraction,
+                                        actor.actor->object_class, random);
     if (box) picture.boxes.push_back(*box);
   }
 
   if (!ideal) {
     const int count =
         common.Poisson(std::min(40.0, camera_.clutter_per_image * sensors.clutter_scale));
-    for (int i = 0; i < count; ++i) picture.boxes.push_back(ClutterBox(common));
+    for (int i = 0; i < count; ++i) picture.boxes.push_back(ClutterBox(camera_, common));
   }
   if (sensors.outlier_share > 0.0) Spoil(seq, picture);
   picture.num_boxes = static_cast<std::int32_t>(picture.boxes.size());
 }
 
-// One box, or two side by side where the vehicle is split, and now and then one of them twice.
-void CameraSimulator::AddFamilyBoxes(const PixelBox& exact, const CameraFamily::Vehicle& vehicle,
-                                     ObjectClass object_class, Random& random,
-                                     camera_detections_t& picture) const {
-  const CameraFamilySpec& spec = world_.scenario().family->camera;
-  const double scale = world_.scenario().sensors.noise_scale;
-  const double size_px = std::max(exact.right - exact.left, exact.bottom - exact.top);
-  const double slow_px = std::hypot(spec.edge_markov_px, spec.edge_markov_share * size_px);
-  const auto add = [&](const std::array<double, 4>& edges) {
-    std::array<double, 4> noisy = edges;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const double far = k % 2 == 0 ? camera_.image_width_px : camera_.image_height_px;
-      const double error = slow_px * vehicle.edge[k] + random.Normal(0.0, spec.edge_white_px);
-      const bool is_cut = edges[k] <= 0.0 || edges[k] >= far;
-      noisy[k] = std::clamp(edges[k] + (is_cut ? 0.0 : scale * error), 0.0, far);
-    }
-    camera_box_t box{};
-    box.left_px = noisy[0];
-    box.top_px = noisy[1];
-    box.width_px = noisy[2] - noisy[0];
-    box.height_px = noisy[3] - noisy[1];
-    if (box.width_px < 3.0 || box.height_px < 4.0) return;
-    box.score =
-        std::clamp(0.5 + 0.4 * std::min(1.0, box.height_px / 60.0) + random.Normal(0.0, 0.08),
-                   std::min(0.99, camera_.min_score + 0.02), 0.99);
-    SetClass(object_class, box);
-    picture.boxes.push_back(box);
-  };
-  if (!vehicle.is_split) {
-    add({exact.left, exact.top, exact.right, exact.bottom});
-  } else {
-    const double cut = exact.left + (exact.right - exact.left) * random.Uniform(0.4, 0.6);
-    add({exact.left, exact.top, cut, exact.bottom});
-    add({cut, exact.top, exact.right, exact.bottom});
-  }
-  if (random.Bernoulli(spec.duplicate_share)) {
-    const double by = 0.1 * (exact.right - exact.left);
-    add({exact.left + by, exact.top + 0.5 * by, exact.right + 0.5 * by, exact.bottom});
-  }
-}
-
 void CameraSimulator::ShootFamily(const Snapshot& snapshot, std::int64_t seq,
                                   camera_detections_t& picture) {
+  const CameraFamilySpec& spec = world_.scenario().family->camera;
+  const double noise_scale = world_.scenario().sensors.noise_scale;
   const double nod = family_->Begin(snapshot.ego, snapshot.time_s, seq, HalfSpan(camera_));
   LookClosely(snapshot, nod, seen_);
   for (std::size_t i = 0; i < snapshot.actors.size(); ++i) {
@@ -345,7 +195,7 @@ void CameraSimulator::ShootFamily(const Snapshot& snapshot, std::int64_t seq,
     if (!random.Bernoulli(seen.sight.detection_probability) || vehicle.is_missed) continue;
     PixelBox exact = seen.box;
     if (vehicle.is_amodal) AddOutline(snapshot.ego, actor, nod, exact);
-    AddFamilyBoxes(exact, vehicle, vehicle.read_as, random, picture);
+    AddFamilyBoxes(camera_, spec, noise_scale, exact, vehicle, vehicle.read_as, random, picture);
   }
   Random random =
       SubjectRandom(seed_, "family false box", {index_, static_cast<std::uint64_t>(seq)});
@@ -360,7 +210,7 @@ void CameraSimulator::ShootFamily(const Snapshot& snapshot, std::int64_t seq,
       }
     }
     if (exact.is_empty || exact.right < 3.0 || exact.left > camera_.image_width_px - 3.0) continue;
-    AddFamilyBoxes(exact, {}, box.object_class, random, picture);
+    AddFamilyBoxes(camera_, spec, noise_scale, exact, {}, box.object_class, random, picture);
   }
   picture.num_boxes = static_cast<std::int32_t>(picture.boxes.size());
 }

@@ -7,18 +7,14 @@
 #include <v2vouch/camera_detections_t.hpp>
 #include <vector>
 
+#include "sim/sensors/camera_boxes.h"
 #include "sim/sensors/camera_family.h"
+#include "sim/sensors/camera_projection.h"
 #include "sim/sensors/radar.h"
 #include "sim/sensors/skyline.h"
 #include "sim/world/world.h"
 
 namespace v2vouch::sim {
-
-/// Pixel of a point given in the body frame (x forward, y left, z up from the road), through
-/// mounting, pinhole and OpenCV distortion. `extra_pitch_rad` is the body's nod, down positive.
-/// @return nullopt for points less than 0.2 m ahead of the image plane.
-std::optional<Eigen::Vector2d> Project(const CameraConfig& camera, const Eigen::Vector3d& p_B,
-                                       double extra_pitch_rad = 0.0);
 
 /// One smart camera. Realistic mode: the box is the bounding box of the part of the projected
 /// cuboid that nothing nearer covers, cut at the picture's border; every edge that is not cut has
@@ -38,14 +34,6 @@ class CameraSimulator {
   void Look(const Snapshot& snapshot, std::vector<Sight>& sights);
 
  private:
-  struct PixelBox {
-    double left = 1e9;
-    double top = 1e9;
-    double right = -1e9;
-    double bottom = -1e9;
-    bool is_empty = true;
-    void Add(const Eigen::Vector2d& pixel);
-  };
   struct Seen {
     Sight sight;
     PixelBox box;  ///< Of the visible part, not yet cut at the border.
@@ -63,12 +51,7 @@ class CameraSimulator {
   [[nodiscard]] double sigma_px() const;
   [[nodiscard]] std::optional<camera_box_t> PointBox(const EgoTruth& ego, const ActorState& actor,
                                                      double nod_rad, Random& random) const;
-  [[nodiscard]] std::optional<camera_box_t> VehicleBox(const Seen& seen, ObjectClass object_class,
-                                                       Random& random) const;
-  [[nodiscard]] camera_box_t ClutterBox(Random& random) const;
   void ShootFamily(const Snapshot& snapshot, std::int64_t seq, camera_detections_t& picture);
-  void AddFamilyBoxes(const PixelBox& exact, const CameraFamily::Vehicle& vehicle,
-                      ObjectClass object_class, Random& random, camera_detections_t& picture) const;
 
   void Spoil(std::int64_t seq, camera_detections_t& picture) const;
 

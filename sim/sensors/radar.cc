@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/sensors/radar_output.h"
 #include "sim/sensors/subject.h"
+#include "sim/sensors/usual_reflections.h"
 
 namespace v2vouch::sim {
 namespace {
@@ -12,88 +14,10 @@ namespace {
 constexpr double kRay_rad = FromDegrees(0.1);
 constexpr double kWeakest_dbsm = -10.0;
 
-double UsualRcs(ObjectClass object_class) {
-  switch (object_class) {
-    case ObjectClass::kTruck:
-    case ObjectClass::kBus:
-      return 18.0;
-    case ObjectClass::kVan:
-      return 12.0;
-    case ObjectClass::kMotorcycle:
-      return 3.0;
-    case ObjectClass::kPedestrian:
-    case ObjectClass::kCyclist:
-      return -3.0;
-    default:
-      return 9.0;
-  }
-}
-
-// Reflections of a vehicle in one scan, on average: 2 far away to 8 close by for a car.
-double MeanReflections(ObjectClass object_class, double range_m) {
-  const double car = 2.0 + 6.0 * std::max(0.0, 1.0 - range_m / 80.0);
-  switch (object_class) {
-    case ObjectClass::kTruck:
-    case ObjectClass::kBus:
-      return 1.6 * car;
-    case ObjectClass::kMotorcycle:
-    case ObjectClass::kCyclist:
-      return std::max(1.0, 0.4 * car);
-    case ObjectClass::kPedestrian:
-      return 1.0;
-    default:
-      return car;
-  }
-}
-
-struct Spot {
-  Vec2 place;
-  double weight;
-};
-
-// Strong points of a vehicle on the sides that face the antenna.
-std::vector<Spot> StrongSpots(const Box& box, const Vec2& antenna) {
-  const double l = 0.5 * box.length_m;
-  const double w = 0.5 * box.width_m;
-  const Vec2 from = box.Local(antenna);
-  std::vector<Spot> spots;
-  const double side = from.y() > 0.0 ? 1.0 : -1.0;
-  const double end = from.x() > 0.0 ? 1.0 : -1.0;
-  const bool sees_side = std::abs(from.y()) > w;
-  const bool sees_end = std::abs(from.x()) > l;
-  const auto add = [&](double x, double y, double weight) {
-    spots.push_back({box.PointAt(x, y), weight});
-  };
-  // Corners are rounded, so their reflection sits a little inside.
-  const double inset = std::min({0.15, 0.3 * l, 0.3 * w});
-  if (sees_end) {
-    add(end * l, 0.0, 1.5);  // Number plate, grille, tail gate.
-    add(end * (l - inset), w - inset, 1.0);
-    add(end * (l - inset), -(w - inset), 1.0);
-  }
-  if (sees_side) {
-    if (!sees_end) add(end * (l - inset), side * (w - inset), 1.0);
-    add(-end * (l - inset), side * (w - inset), 0.7);
-    add(0.3 * box.length_m, side * (w - inset), 1.2);  // Wheel houses.
-    add(-0.3 * box.length_m, side * (w - inset), 1.2);
-    for (double x = -l + 2.0; box.length_m > 7.0 && x < l - 2.0; x += 2.5) {
-      add(x, side * w, 0.4);  // Frame and tanks of long vehicles.
-    }
-  }
-  return spots;
-}
-
 double RangeFactor(double range_m, double max_range_m) {
   if (range_m > max_range_m) return 0.0;
   const double share = range_m / max_range_m;
   return share < 0.7 ? 1.0 : 1.0 - 0.4 * (share - 0.7) / 0.3;
-}
-
-// Mirror image of `p` over the line through a and b.
-Vec2 Mirrored(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 along = (b - a).normalized();
-  const Vec2 foot = a + (p - a).dot(along) * along;
-  return 2.0 * foot - p;
 }
 
 }  // namespace
@@ -103,30 +27,11 @@ RadarSimulator::RadarSimulator(const World& world, int index, std::uint64_t seed
       radar_(world.vehicle().radars[static_cast<std::size_t>(index)]),
       index_(static_cast<std::uint64_t>(index)),
       seed_(seed),
-      skyline_(radar_.half_fov_rad, kRay_rad) {
+      skyline_(radar_.half_fov_rad, kRay_rad),
+      scenery_(SceneryOf(world)) {
   radar_.detection_probability *= world.scenario().sensors.detection_scale;
-  for (const Wall& wall : world.walls()) {
-    for (std::size_t i = 0; i < wall.outline.size(); ++i) {
-      const Vec2& a = wall.outline[i];
-      const Vec2& b = wall.outline[(i + 1) % wall.outline.size()];
-      const double length = (b - a).norm();
-      const Vec2 normal = -LeftOf((b - a) / length);  // Outwards: the outline is counter-clockwise.
-      scatterers_.push_back({a, Vec2::Zero(), 12.0, 0.8});
-      for (double s = 1.0; s < length; s += 2.0) {  // Window frames, pipes, door steps.
-        scatterers_.push_back({a + (b - a) * (s / length), normal, 6.0, 0.6});
-      }
-      mirrors_.emplace_back(a, b);
-    }
-  }
   if (const auto& family = world.scenario().family) {
     family_.emplace(family->radar, world.scenario().sensors.noise_scale, index_, seed_);
-  }
-  for (const Vec2& pole : world.poles()) scatterers_.push_back({pole, Vec2::Zero(), 4.0, 0.95});
-  for (const Rail& rail : world.rails()) {
-    for (std::size_t i = 0; i < rail.points.size(); ++i) {
-      scatterers_.push_back({rail.points[i], Vec2::Zero(), 2.0, 0.6});
-      if (i > 0) mirrors_.emplace_back(rail.points[i - 1], rail.points[i]);
-    }
   }
 }
 
@@ -184,19 +89,13 @@ bool RadarSimulator::AddPoint(const Antenna& antenna, const Vec2& place, const V
   const Vec2 d = place - antenna.place;
   const double range = d.norm();
   const double azimuth = AngleDifference(std::atan2(d.y(), d.x()), antenna.yaw_rad);
-  if (range < std::max(0.1, radar_.min_range_m) || range > radar_.max_range_m ||
-      std::abs(azimuth) > radar_.half_fov_rad) {
-    return false;
-  }
+  if (!Covers(radar_, range, azimuth)) return false;
   const double scale = world_.scenario().sensors.noise_scale;
-  radar_detection_t detection{};
   const double measured = range + random.Normal(0.0, scale * radar_.range_sigma_m);
   const double bearing = azimuth + random.Normal(0.0, scale * radar_.azimuth_sigma_rad);
   const double rate = (velocity - antenna.velocity).dot(d) / range +
                       random.Normal(0.0, scale * radar_.range_rate_sigma_mps);
-  detection.range_m = std::max(0.05, measured) - radar_.range_offset_m;
-  detection.azimuth_rad = WrapAngle(radar_.flip_azimuth ? -bearing : bearing);
-  detection.range_rate_mps = radar_.flip_range_rate ? -rate : rate;
+  radar_detection_t detection = Reported(radar_, std::max(0.05, measured), bearing, rate);
   // Swerling-like fading; the sensor's own threshold is behind it, so nothing comes out weaker.
   detection.rcs_dbsm = std::max(kWeakest_dbsm, rcs_dbsm + random.Normal(0.0, 3.0));
   detection.snr_db =
@@ -264,7 +163,7 @@ void RadarSimulator::AddVehicles(const Snapshot& snapshot, std::int64_t seq, con
 void RadarSimulator::AddStatics(std::int64_t seq, const Antenna& antenna, radar_scan_t& scan) {
   if (radar_.output == RadarOutput::kObjects) return;
   Random random = SubjectRandom(seed_, "radar scenery", {index_, static_cast<std::uint64_t>(seq)});
-  for (const Scatterer& scatterer : scatterers_) {
+  for (const Scatterer& scatterer : scenery_.scatterers) {
     const Vec2 d = scatterer.place - antenna.place;
     if (d.squaredNorm() > radar_.max_range_m * radar_.max_range_m) continue;
     if (!scatterer.normal.isZero() && scatterer.normal.dot(d) >= 0.0) continue;
@@ -301,7 +200,7 @@ void RadarSimulator::AddGhosts(const Snapshot& snapshot, std::int64_t seq, const
         SubjectRandom(seed_, "radar ghost spell", {index_, spell, actor.actor->id})
             .Bernoulli(std::min(1.0, 0.08 * scale));
     if (!in_spell || actor.motion.speed_mps < 2.0 || !random.Bernoulli(0.5)) continue;
-    for (const auto& [a, b] : mirrors_) {
+    for (const auto& [a, b] : scenery_.mirrors) {
       const Vec2 image = Mirrored(actor.motion.centre, a, b);
       const Vec2 d = image - antenna.place;
       const double length = d.norm();
@@ -328,7 +227,6 @@ void RadarSimulator::AddClutter(std::int64_t seq, const Antenna& antenna, radar_
                       std::exp((6.0 - kFloor_db) / kMean_db);
   const int count = random.Poisson(std::min(rate, 40.0));
   for (int i = 0; i < count; ++i) {
-    radar_detection_t detection{};
     const double range = random.Uniform(std::max(1.0, radar_.min_range_m), radar_.max_range_m);
     const double bearing = random.Uniform(-radar_.half_fov_rad, radar_.half_fov_rad);
     // Half of it stands (road surface, manholes), the rest has any Doppler.
@@ -336,12 +234,9 @@ void RadarSimulator::AddClutter(std::int64_t seq, const Antenna& antenna, radar_
     const double rate_mps = random.Bernoulli(0.5)
                                 ? -antenna.velocity.dot(direction) + random.Normal(0.0, 0.1)
                                 : random.Uniform(-30.0, 30.0);
-    detection.range_m = range - radar_.range_offset_m;
-    detection.azimuth_rad = WrapAngle(radar_.flip_azimuth ? -bearing : bearing);
-    detection.range_rate_mps = radar_.flip_range_rate ? -rate_mps : rate_mps;
+    radar_detection_t detection = Reported(radar_, range, bearing, rate_mps);
     detection.rcs_dbsm = random.Uniform(kWeakest_dbsm, 0.0);
     detection.snr_db = kFloor_db - kMean_db * std::log(1.0 - random.Uniform());
-    detection.track_id = -1;
     scan.detections.push_back(detection);
   }
 }
@@ -355,7 +250,7 @@ void RadarSimulator::Scan(const Snapshot& snapshot, std::int64_t seq, radar_scan
   if (family_) {
     family_->Scan(snapshot, seq,
                   {radar_, antenna.place, antenna.velocity, antenna.yaw_rad, skyline_, open_rays_,
-                   scatterers_, mirrors_},
+                   scenery_.scatterers, scenery_.mirrors},
                   scan);
     if (world_.scenario().sensors.outlier_share > 0.0) Spoil(seq, scan);
     scan.num_detections = static_cast<std::int32_t>(scan.detections.size());

@@ -9,6 +9,7 @@
 #include "daemon/common/base/random.h"
 #include "sim/sensors/radar_family.h"
 #include "sim/sensors/skyline.h"
+#include "sim/sensors/usual_reflections.h"
 #include "sim/world/world.h"
 
 namespace v2vouch::sim {
@@ -67,8 +68,7 @@ class RadarSimulator {
   std::uint64_t index_;
   std::uint64_t seed_;
   Skyline skyline_;
-  std::vector<Scatterer> scatterers_;
-  std::vector<std::pair<Vec2, Vec2>> mirrors_;  ///< Pieces of rails and facades.
+  Scenery scenery_;
   std::vector<Sight> sights_;
   std::vector<std::vector<int>> open_rays_;  ///< Per actor: rays that meet it first, within range.
   std::optional<RadarFamily> family_;        ///< Of modes that have one.

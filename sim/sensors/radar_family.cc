@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/sensors/radar_output.h"
 #include "sim/sensors/subject.h"
 
 namespace v2vouch::sim {
 namespace {
 
-constexpr double kReference_m = 20.0;    // Range that strengths are given for.
 constexpr double kBehind_m = 0.7;        // A point this far behind the first face is hidden.
 constexpr double kHiddenSide_db = 12.0;  // A wheel on the far side, seen under the car.
 constexpr double kSpell_s = 0.5;         // Images come and go so.
@@ -18,12 +18,6 @@ constexpr double kEdgeLoss_db = 6.0;     // Of the beam, at the edge of the fiel
 
 double Power(double db) { return std::pow(10.0, 0.1 * db); }
 double Decibel(double power) { return 10.0 * std::log10(std::max(power, 1e-12)); }
-
-// Mirror image of `p` over the line through a and b.
-Vec2 Mirrored(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 along = (b - a).normalized();
-  return 2.0 * (a + (p - a).dot(along) * along) - p;
-}
 
 }  // namespace
 
@@ -33,14 +27,16 @@ double RadarView::AzimuthTo(const Vec2& point) const {
 }
 
 bool RadarView::Covers(const Vec2& point) const {
-  const double range = (point - place).norm();
-  return range >= std::max(0.1, radar.min_range_m) && range <= radar.max_range_m &&
-         std::abs(AzimuthTo(point)) <= radar.half_fov_rad;
+  return sim::Covers(radar, (point - place).norm(), AzimuthTo(point));
 }
 
 RadarFamily::RadarFamily(const RadarFamilySpec& spec, double noise_scale, std::uint64_t index,
                          std::uint64_t seed)
-    : spec_(spec), noise_scale_(noise_scale), index_(index), seed_(seed) {}
+    : spec_(spec),
+      noise_scale_(noise_scale),
+      index_(index),
+      seed_(seed),
+      objects_(spec, noise_scale) {}
 
 void RadarFamily::AddEcho(const RadarView& view, const Vec2& place, const Vec2& velocity,
                           double snr_at_20m_db, std::int64_t vehicle) {
@@ -51,8 +47,7 @@ void RadarFamily::AddEcho(const RadarView& view, const Vec2& place, const Vec2& 
   const double off = azimuth / view.radar.half_fov_rad;
   const double snr =
       snr_at_20m_db - 40.0 * std::log10(range / kReference_m) - kEdgeLoss_db * off * off;
-  echoes_.push_back(
-      {place, range, azimuth, (velocity - view.velocity).dot(d) / range, snr, vehicle});
+  echoes_.push_back({range, azimuth, (velocity - view.velocity).dot(d) / range, snr, vehicle});
 }
 
 void RadarFamily::AddVehicle(const Snapshot& snapshot, const ActorState& actor, std::size_t index,
@@ -176,8 +171,7 @@ void RadarFamily::AddClutter(const RadarView& view, Random& random) {
     const double range = random.Uniform(std::max(1.0, view.radar.min_range_m), farthest_m);
     const double azimuth = random.Uniform(-view.radar.half_fov_rad, view.radar.half_fov_rad);
     const Vec2 direction = Direction(view.yaw_rad + azimuth);
-    echoes_.push_back({view.place + range * direction, range, azimuth,
-                       rate_mps - view.velocity.dot(direction), snr_db, kNobody});
+    echoes_.push_back({range, azimuth, rate_mps - view.velocity.dot(direction), snr_db, kNobody});
   };
   const int ground = random.Poisson(spec_.ground_per_scan);
   for (int k = 0; k < ground; ++k) {
@@ -241,97 +235,15 @@ void RadarFamily::Report(const RadarView& view, Random& random, radar_scan_t& sc
     // The data sheet's sigmas hold at 25 dB; +-20 dB are a factor of about 2.
     const double scale =
         noise_scale_ * std::clamp(std::pow(10.0, (25.0 - echo.snr_db) / 60.0), 0.6, 2.0);
-    radar_detection_t detection{};
     const double range =
         std::max(0.05, echo.range_m + random.Normal(0.0, scale * radar.range_sigma_m));
     const double azimuth = echo.azimuth_rad + random.Normal(0.0, scale * radar.azimuth_sigma_rad);
     const double rate = echo.rate_mps + random.Normal(0.0, scale * radar.range_rate_sigma_mps);
-    detection.range_m = range - radar.range_offset_m;
-    detection.azimuth_rad = WrapAngle(radar.flip_azimuth ? -azimuth : azimuth);
-    detection.range_rate_mps = radar.flip_range_rate ? -rate : rate;
+    radar_detection_t detection = Reported(radar, range, azimuth, rate);
     detection.snr_db = spec_.snr_given ? echo.snr_db : kNone;
     detection.rcs_dbsm =
         spec_.snr_given ? echo.snr_db - 30.0 + 40.0 * std::log10(range / kReference_m) : kNone;
-    detection.track_id = -1;
     scan.detections.push_back(detection);
-  }
-}
-
-// Another part of the vehicle answers: a corner, the middle of a face, the centre.
-void RadarFamily::Renew(double time_s, Random& random, TrackedObject& object) {
-  if (time_s >= object.jump_s) {
-    const auto part = [&] { return std::floor(random.Uniform(-1.0, 2.0)); };  // -1, 0, 1.
-    object.x_share = part();
-    object.y_share = part();
-    object.jump_s = time_s - spec_.jump_every_s * std::log(1.0 - random.Uniform());
-  }
-  if (time_s >= object.new_id_s) {
-    object.track_id = next_track_id_++;
-    object.new_id_s = time_s - spec_.new_id_every_s * std::log(1.0 - random.Uniform());
-  }
-}
-
-void RadarFamily::ReportObject(const RadarView& view, const TrackedObject& object, Random& random,
-                               radar_scan_t& scan) const {
-  if (!view.Covers(object.place)) return;
-  const RadarConfig& radar = view.radar;
-  const Vec2 d = object.place - view.place;
-  radar_detection_t detection{};
-  const double range = d.norm() + random.Normal(0.0, noise_scale_ * radar.range_sigma_m);
-  const double azimuth =
-      view.AzimuthTo(object.place) + random.Normal(0.0, noise_scale_ * radar.azimuth_sigma_rad);
-  const double rate = (object.velocity - view.velocity).dot(d) / d.norm() +
-                      random.Normal(0.0, noise_scale_ * radar.range_rate_sigma_mps);
-  detection.range_m = std::max(0.05, range) - radar.range_offset_m;
-  detection.azimuth_rad = WrapAngle(radar.flip_azimuth ? -azimuth : azimuth);
-  detection.range_rate_mps = radar.flip_range_rate ? -rate : rate;
-  detection.rcs_dbsm = 10.0;
-  detection.snr_db = 30.0 - 40.0 * std::log10(d.norm() / (2.0 * kReference_m));
-  detection.track_id = object.track_id;
-  scan.detections.push_back(detection);
-}
-
-void RadarFamily::ReportObjects(const Snapshot& snapshot, const RadarView& view, Random& random,
-                                radar_scan_t& scan) {
-  const double now = snapshot.time_s;
-  const double dt = now - last_time_s_;
-  for (const ActorState& actor : snapshot.actors) {
-    const auto id = static_cast<std::int64_t>(actor.actor->id);
-    const bool is_seen =
-        std::ranges::any_of(echoes_, [&](const Echo& echo) { return echo.vehicle == id; });
-    if (!is_seen) continue;
-    const auto [found, is_new] = objects_.try_emplace(id);
-    TrackedObject& object = found->second;
-    if (is_new) object.seen_since_s = now;
-    object.last_seen_s = now;
-    Renew(now, random, object);
-    const Box box = actor.box();
-    object.place =
-        box.PointAt(0.5 * box.length_m * object.x_share, 0.5 * box.width_m * object.y_share);
-    object.velocity = actor.VelocityAt(object.place);
-  }
-  if (random.Bernoulli(std::min(1.0, spec_.false_objects_per_s * dt))) {
-    TrackedObject& object = objects_[next_false_--];
-    const double range = random.Uniform(5.0, std::min(80.0, view.radar.max_range_m));
-    const double azimuth = random.Uniform(-view.radar.half_fov_rad, view.radar.half_fov_rad);
-    object.place = view.place + range * Direction(view.yaw_rad + azimuth);
-    object.velocity = random.Bernoulli(0.5)
-                          ? Vec2(Vec2::Zero())
-                          : Vec2(random.Uniform(1.0, 15.0) * Direction(random.Uniform(-kPi, kPi)));
-    object.seen_since_s = object.last_seen_s = now;
-    object.ends_s = now + 0.3 - 1.5 * std::log(1.0 - random.Uniform());
-    object.track_id = next_track_id_++;
-    object.new_id_s = object.jump_s = 1e9;
-  }
-  std::erase_if(objects_, [&](const auto& entry) {
-    const TrackedObject& object = entry.second;
-    return entry.first < 0 ? now > object.ends_s : now - object.last_seen_s > spec_.coast_s;
-  });
-  for (auto& [id, object] : objects_) {
-    const bool coasts = id < 0 || object.last_seen_s < now;
-    if (coasts) object.place += dt * object.velocity;
-    if (id >= 0 && now - object.seen_since_s < spec_.confirm_s) continue;
-    ReportObject(view, object, random, scan);
   }
 }
 
@@ -354,11 +266,13 @@ void RadarFamily::Scan(const Snapshot& snapshot, std::int64_t seq, const RadarVi
   }
   MergeCells();
   if (gives_objects) {
-    ReportObjects(snapshot, view, random, scan);
+    const auto is_seen = [this](std::int64_t id) {
+      return std::ranges::any_of(echoes_, [id](const Echo& echo) { return echo.vehicle == id; });
+    };
+    objects_.Report(snapshot, view, is_seen, random, scan);
   } else {
     Report(view, random, scan);
   }
-  last_time_s_ = snapshot.time_s;
 }
 
 }  // namespace v2vouch::sim

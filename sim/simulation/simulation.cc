@@ -16,6 +16,7 @@
 #include "sim/sensors/radar.h"
 #include "sim/sensors/subject.h"
 #include "sim/sensors/truth.h"
+#include "sim/simulation/arrival_queue.h"
 
 namespace v2vouch::sim {
 namespace {
@@ -37,30 +38,22 @@ double Phase(std::size_t index, double offset_s, double period_s) {
   return std::fmod(offset_s + 0.0131 * static_cast<double>(index), period_s);
 }
 
+std::string ChannelOf(const RadarConfig& radar) { return "RADAR_" + radar.name; }
+std::string ChannelOf(const CameraConfig& camera) {
+  const bool is_detector = camera.source == CameraSource::kDetected;
+  return "CAMERA_" + camera.name + (is_detector ? "_DETECTED" : "");
+}
+std::string ChannelOf(const ObjectSensorConfig& source) { return "OBJECTS_" + source.name; }
+
 }  // namespace
 
 struct Simulation::State {
-  struct Radar {
-    RadarSimulator simulator;
-    const RadarConfig& config;
+  template <class Simulator, class Config, class WireType>
+  struct Source {
+    using Message = WireType;
+    Simulator simulator;
+    const Config& config;
     Ticks ticks;
-  };
-  struct Camera {
-    CameraSimulator simulator;
-    const CameraConfig& config;
-    Ticks ticks;
-  };
-  struct Objects {
-    ObjectSimulator simulator;
-    const ObjectSensorConfig& config;
-    Ticks ticks;
-  };
-  struct Pending {
-    SimEvent event;
-    std::int64_t stamp_utime = 0;
-    std::optional<bsm_t> bsm;  // Numbered and encoded when its turn comes.
-    std::optional<truth_bsm_t> truth;
-    bool is_cut = false;  // Half of its bytes arrive.
   };
 
   State(const World& w, std::uint64_t s)
@@ -73,24 +66,9 @@ struct Simulation::State {
         writer(w.scenario()) {
     const Scenario& scenario = w.scenario();
     start_utime = static_cast<std::int64_t>(scenario.start_utc_s) * 1000000;
-    for (std::size_t i = 0; i < w.vehicle().radars.size(); ++i) {
-      const RadarConfig& config = w.vehicle().radars[i];
-      radars.push_back({RadarSimulator(w, static_cast<int>(i), s),
-                        config,
-                        {config.period_s, Phase(i, 0.002, config.period_s)}});
-    }
-    for (std::size_t i = 0; i < w.vehicle().cameras.size(); ++i) {
-      const CameraConfig& config = w.vehicle().cameras[i];
-      cameras.push_back({CameraSimulator(w, static_cast<int>(i), s),
-                         config,
-                         {config.period_s, Phase(i, 0.007, config.period_s)}});
-    }
-    for (std::size_t i = 0; i < w.vehicle().objects.size(); ++i) {
-      const ObjectSensorConfig& config = w.vehicle().objects[i];
-      objects.push_back({ObjectSimulator(w, static_cast<int>(i), s),
-                         config,
-                         {config.period_s, Phase(i, 0.011, config.period_s)}});
-    }
+    AddSources(w.vehicle().radars, 0.002, radars);
+    AddSources(w.vehicle().cameras, 0.007, cameras);
+    AddSources(w.vehicle().objects, 0.011, objects);
     odometry_ticks = {1.0 / scenario.odometry.rate_hz, 0.0};
     gnss_ticks = {1.0 / scenario.gnss.rate_hz, 0.0};
     truth_ticks = {kTruthPeriod_s, 0.0};
@@ -100,6 +78,17 @@ struct Simulation::State {
     if (scenario.bsm.own_echo) senders.emplace_back(w, -1, s);
   }
 
+  template <class Config, class Sensor>
+  void AddSources(const std::vector<Config>& configs, double offset_s,
+                  std::vector<Sensor>& sources) {
+    for (std::size_t i = 0; i < configs.size(); ++i) {
+      const Config& config = configs[i];
+      sources.push_back({{world, static_cast<int>(i), seed},
+                         config,
+                         {config.period_s, Phase(i, offset_s, config.period_s)}});
+    }
+  }
+
   [[nodiscard]] std::int64_t Utime(double time_s) const {
     return start_utime + std::llround(time_s * 1e6);
   }
@@ -107,12 +96,7 @@ struct Simulation::State {
   template <class T>
   void Send(const std::string& channel, std::int64_t stamp_utime, double arrival_s,
             const T& message) {
-    Pending pending;
-    pending.event.arrival = FromMicros(Utime(arrival_s));
-    pending.event.channel = channel;
-    pending.stamp_utime = stamp_utime;
-    wire::Encode(message, pending.event.bytes);
-    queue.push_back(std::move(pending));
+    queue.Send(channel, stamp_utime, FromMicros(Utime(arrival_s)), message);
   }
 
   // Latency of one message: shortest, plus a uniform part, and now and then twice that.
@@ -129,23 +113,44 @@ struct Simulation::State {
            SubjectRandom(seed, name, {index, static_cast<std::uint64_t>(seq)}).Bernoulli(share);
   }
 
-  void RunRadars(double until_s);
-  void RunCameras(double until_s);
-  void RunObjects(double until_s);
+  struct Delays {
+    const char* latency;  // Names of the random numbers.
+    const char* frame;
+    double shortest_s;
+    double spread_s;
+  };
+  // Measures on all sensors of one kind: `measure(simulator, snapshot, seq, message)`.
+  template <class Sensor, class Measure>
+  void Run(std::vector<Sensor>& sources, double until_s, const Delays& delays,
+           const Measure& measure) {
+    typename Sensor::Message message{};
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      Sensor& source = sources[i];
+      for (; source.ticks.time_s() < until_s; ++source.ticks.next) {
+        const double time = source.ticks.time_s();
+        measure(source.simulator, world.At(time), source.ticks.next, message);
+        message.utime = Utime(time - source.config.clock_offset_s);
+        const double latency =
+            Latency(delays.latency, i, message.seq, delays.shortest_s, delays.spread_s);
+        if (IsFrameLost(delays.frame, i, message.seq)) continue;
+        Send(ChannelOf(source.config), message.utime, time + latency, message);
+      }
+    }
+  }
+
+  void RunSensors(double until_s);
   void RunEgo(double until_s);
   void RunTruth(double until_s);
   void RunSenders(double until_s);
   void Transmit(const Message& message);
-  void Pend(const bsm_t& bsm);
-  void Deliver(Timestamp before, std::vector<SimEvent>& events);
 
   const World& world;
   std::uint64_t seed;
   std::int64_t start_utime = 0;
   double done_s = 0.0;
-  std::vector<Radar> radars;
-  std::vector<Camera> cameras;
-  std::vector<Objects> objects;
+  std::vector<Source<RadarSimulator, RadarConfig, radar_scan_t>> radars;
+  std::vector<Source<CameraSimulator, CameraConfig, camera_detections_t>> cameras;
+  std::vector<Source<ObjectSimulator, ObjectSensorConfig, object_list_t>> objects;
   OdometrySimulator odometry;
   EgoGnssSimulator gnss;
   TruthWriter truth;
@@ -153,61 +158,26 @@ struct Simulation::State {
   std::vector<BsmSender> senders;
   AttackEngine attacks;
   MessageWriter writer;
-  std::int64_t bsm_seq = 0;
-  std::vector<Pending> queue;
+  ArrivalQueue queue;
 };
 
-void Simulation::State::RunRadars(double until_s) {
+// Radars, cameras and object lists: the same loop over sensors that measure other things.
+void Simulation::State::RunSensors(double until_s) {
   const SensorsSpec& spec = world.scenario().sensors;
-  radar_scan_t scan{};
-  for (std::size_t i = 0; i < radars.size(); ++i) {
-    Radar& radar = radars[i];
-    for (; radar.ticks.time_s() < until_s; ++radar.ticks.next) {
-      const double time = radar.ticks.time_s();
-      radar.simulator.Scan(world.At(time), radar.ticks.next, scan);
-      scan.utime = Utime(time - radar.config.clock_offset_s);
-      const double latency =
-          Latency("radar latency", i, scan.seq, spec.radar_latency_s, spec.radar_latency_spread_s);
-      if (IsFrameLost("radar frame", i, scan.seq)) continue;
-      Send("RADAR_" + radar.config.name, scan.utime, time + latency, scan);
-    }
-  }
-}
-
-void Simulation::State::RunCameras(double until_s) {
-  const SensorsSpec& spec = world.scenario().sensors;
-  camera_detections_t picture{};
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    Camera& camera = cameras[i];
-    const bool is_detector = camera.config.source == CameraSource::kDetected;
-    const std::string channel = "CAMERA_" + camera.config.name + (is_detector ? "_DETECTED" : "");
-    for (; camera.ticks.time_s() < until_s; ++camera.ticks.next) {
-      const double time = camera.ticks.time_s();
-      camera.simulator.Shoot(world.At(time), camera.ticks.next, picture);
-      picture.utime = Utime(time - camera.config.clock_offset_s);
-      const double latency = Latency("camera latency", i, picture.seq, spec.camera_latency_s,
-                                     spec.camera_latency_spread_s);
-      if (IsFrameLost("camera frame", i, picture.seq)) continue;
-      Send(channel, picture.utime, time + latency, picture);
-    }
-  }
-}
-
-void Simulation::State::RunObjects(double until_s) {
-  const SensorsSpec& spec = world.scenario().sensors;
-  object_list_t list{};
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    Objects& source = objects[i];
-    for (; source.ticks.time_s() < until_s; ++source.ticks.next) {
-      const double time = source.ticks.time_s();
-      source.simulator.Detect(world.At(time), source.ticks.next, list);
-      list.utime = Utime(time - source.config.clock_offset_s);
-      const double latency = Latency("objects latency", i, list.seq, spec.objects_latency_s,
-                                     spec.objects_latency_spread_s);
-      if (IsFrameLost("objects frame", i, list.seq)) continue;
-      Send("OBJECTS_" + source.config.name, list.utime, time + latency, list);
-    }
-  }
+  Run(radars, until_s,
+      {"radar latency", "radar frame", spec.radar_latency_s, spec.radar_latency_spread_s},
+      [](RadarSimulator& simulator, const Snapshot& now, std::int64_t seq, radar_scan_t& scan) {
+        simulator.Scan(now, seq, scan);
+      });
+  Run(cameras, until_s,
+      {"camera latency", "camera frame", spec.camera_latency_s, spec.camera_latency_spread_s},
+      [](CameraSimulator& simulator, const Snapshot& now, std::int64_t seq,
+         camera_detections_t& picture) { simulator.Shoot(now, seq, picture); });
+  Run(objects, until_s,
+      {"objects latency", "objects frame", spec.objects_latency_s, spec.objects_latency_spread_s},
+      [](ObjectSimulator& simulator, const Snapshot& now, std::int64_t seq, object_list_t& list) {
+        simulator.Detect(now, seq, list);
+      });
 }
 
 void Simulation::State::RunEgo(double until_s) {
@@ -254,50 +224,13 @@ void Simulation::State::RunSenders(double until_s) {
   std::vector<RawMessage> raw;
   attacks.AddFloods(until_s, raw);
   for (const RawMessage& message : raw) {
-    Pend(message.bsm);
-    queue.back().is_cut = message.is_cut;
+    queue.Pend(message.bsm, std::nullopt, message.is_cut);
   }
 }
 
 void Simulation::State::Transmit(const Message& message) {
   const bsm_t bsm = writer.Encode(message);
-  Pend(bsm);
-  queue.back().truth = writer.Truth(message, bsm);
-}
-
-void Simulation::State::Pend(const bsm_t& bsm) {
-  Pending pending;
-  pending.event.arrival = FromMicros(bsm.rx_utime);
-  pending.event.channel = "BSM";
-  pending.stamp_utime = bsm.generation_utime;
-  pending.bsm = bsm;
-  queue.push_back(std::move(pending));
-}
-
-void Simulation::State::Deliver(Timestamp before, std::vector<SimEvent>& events) {
-  // Ties: by channel, then stamp; the sort is stable, so one sender's messages keep their order.
-  std::stable_sort(queue.begin(), queue.end(), [](const Pending& a, const Pending& b) {
-    if (a.event.arrival != b.event.arrival) return a.event.arrival < b.event.arrival;
-    if (a.event.channel != b.event.channel) return a.event.channel < b.event.channel;
-    return a.stamp_utime < b.stamp_utime;
-  });
-  std::size_t count = 0;
-  for (; count < queue.size() && queue[count].event.arrival < before; ++count) {
-    Pending& pending = queue[count];
-    if (pending.bsm) {
-      pending.bsm->seq = bsm_seq++;
-      wire::Encode(*pending.bsm, pending.event.bytes);
-      if (pending.is_cut) pending.event.bytes.resize(pending.event.bytes.size() / 2);
-    }
-    events.push_back(std::move(pending.event));
-    if (pending.truth) {
-      pending.truth->seq = bsm_seq - 1;
-      SimEvent beside{events.back().arrival, "TRUTH_BSM", {}};
-      wire::Encode(*pending.truth, beside.bytes);
-      events.push_back(std::move(beside));
-    }
-  }
-  queue.erase(queue.begin(), queue.begin() + static_cast<std::ptrdiff_t>(count));
+  queue.Pend(bsm, writer.Truth(message, bsm));
 }
 
 Simulation::Simulation(const World& world, std::uint64_t seed)
@@ -319,16 +252,14 @@ bool Simulation::Step(std::vector<SimEvent>& events) {
     events.push_back(std::move(event));
   }
   const double until = std::min(duration, state.done_s + kSlice_s);
-  state.RunRadars(until);
-  state.RunCameras(until);
-  state.RunObjects(until);
+  state.RunSensors(until);
   state.RunEgo(until);
   state.RunTruth(until);
   state.RunSenders(until);
   state.done_s = until;
   // Whatever is measured from now on arrives later than this. What is still under way when the
   // scenario ends never arrives.
-  state.Deliver(FromMicros(state.Utime(until)), events);
+  state.queue.Deliver(FromMicros(state.Utime(until)), events);
   return until < duration;
 }
 

@@ -10,6 +10,7 @@
 #include "daemon/rim/warnings_wire/warnings_conversion.h"
 #include "daemon/rim/wire/codec.h"
 #include "sim/run_log/run_log.h"
+#include "sim/run_log/why_not_judged.h"
 
 namespace v2vouch::evaluation {
 namespace {

@@ -137,7 +137,8 @@ class Drawer {
     if (setup == SensorMode::kNoCamera) scenario_.vehicle.cameras.clear();
   }
 
-  void DrawLaw(SensorMode law) {
+  // The reflection law of an ordinary radar, which every family starts from.
+  void DrawOrdinaryLaw() {
     RadarFamilySpec& r = radar_;
     r.specular_db = U(42.0, 50.0);
     r.specular_lobe_deg = U(8.0, 20.0);
@@ -158,6 +159,11 @@ class Drawer {
     r.mirror = U(0.02, 0.08);
     r.ground_per_scan = U(0.3, 2.0);
     r.interference_share = U(0.0, 0.005);
+  }
+
+  void DrawLaw(SensorMode law) {
+    DrawOrdinaryLaw();
+    RadarFamilySpec& r = radar_;
     switch (law) {
       case SensorMode::kCorners:
         r.specular_db = U(24.0, 32.0);

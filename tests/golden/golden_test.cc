@@ -18,6 +18,7 @@
 #include "sim/world/world.h"
 #include "tests/golden/late_and_odd.h"
 #include "tests/golden/list_text.h"
+#include "tests/support/data_folder.h"
 
 namespace v2vouch::testing {
 namespace {
@@ -117,9 +118,7 @@ TEST(Golden, Highway) { Check("highway", Simulate("highway")); }
 TEST(Golden, LateAndOddData) { Check("late_and_odd", LateAndOdd(Simulate("left_turn"))); }
 
 TEST(Golden, RealDrive) {
-  const char* const data = std::getenv("V2VOUCH_DATA");
-  const auto folder = std::filesystem::path(data != nullptr ? data : "../shared/data") / "radar" /
-                      "comma2k19_segment";
+  const auto folder = DataFolder() / "radar" / "comma2k19_segment";
   if (!std::filesystem::exists(folder / "radar_tracks.csv")) {
     GTEST_SKIP() << "SKIPPED: no " << folder << " (set V2VOUCH_DATA)";
   }

@@ -13,8 +13,8 @@
 
 #include "daemon/rim/io/lcm_bus.h"
 #include "daemon/rim/wire/codec.h"
-#include "tests/daemon/detector/data_folder.h"
 #include "tests/integration/program.h"
+#include "tests/support/data_folder.h"
 #include "v2vouch/camera_detections_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
 #include "v2vouch/daemon_status_t.hpp"

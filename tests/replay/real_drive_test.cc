@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -13,6 +12,7 @@
 #include "daemon/rim/engine/engine.h"
 #include "daemon/rim/wire/codec.h"
 #include "sim/import/comma2k19.h"
+#include "tests/support/data_folder.h"
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/track_list_t.hpp"
 
@@ -21,11 +21,7 @@ namespace {
 
 constexpr int kLongestSlot = 535;  // One car ahead for 32.7 s, the longest run in the folder.
 
-std::filesystem::path DriveFolder() {
-  const char* const data = std::getenv("V2VOUCH_DATA");
-  return std::filesystem::path(data != nullptr ? data : "../shared/data") / "radar" /
-         "comma2k19_segment";
-}
+std::filesystem::path DriveFolder() { return DataFolder() / "radar" / "comma2k19_segment"; }
 
 struct Place {
   double x_m = 0.0;

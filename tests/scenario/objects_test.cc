@@ -12,6 +12,7 @@
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/wire/codec.h"
 #include "sim/behaviour/evaluation.h"
+#include "sim/run_log/why_not_judged.h"
 #include "sim/simulation/simulation.h"
 #include "sim/world/overlay.h"
 #include "v2vouch/track_list_t.hpp"

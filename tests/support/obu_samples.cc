@@ -11,13 +11,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/support/data_folder.h"
+
 namespace v2vouch {
 namespace {
-
-std::string DataFolder() {
-  const char* folder = std::getenv("V2VOUCH_DATA");
-  return folder != nullptr ? folder : "../shared/data";
-}
 
 // Of the vectors' names of enumerated values.
 int EnumValue(const nlohmann::json& value, const std::map<std::string, int>& names) {
@@ -62,7 +59,7 @@ obu::BsmCore CoreOfVector(const nlohmann::json& core) {
 }
 
 nlohmann::json Vectors() {
-  std::ifstream file(DataFolder() + "/j2735_bsm_vectors.json");
+  std::ifstream file(DataFolder() / "j2735_bsm_vectors.json");
   return file ? nlohmann::json::parse(file) : nlohmann::json();
 }
 
@@ -202,7 +199,7 @@ std::vector<UnitRecord> UnitRecords() {
   return records;
 }
 
-std::string ObuPath(const std::string& name) { return DataFolder() + "/obu/" + name; }
+std::string ObuPath(const std::string& name) { return (DataFolder() / "obu" / name).string(); }
 
 Octets ObuFile(const std::string& name) {
   std::ifstream file(ObuPath(name), std::ios::binary);

@@ -33,6 +33,35 @@ std::span<const int> AssignmentSolver::Solve(std::span<const double> cost, std::
 // at its lone price. A row once alone is never reached again, so exits need no price of their own.
 void AssignmentSolver::Insert(int row, std::span<const double> cost, std::size_t columns,
                               std::span<const double> lone_row) {
+  const Path path = ShortestPath(row, cost, columns, lone_row);
+  const double length = path.length;
+  row_price_[static_cast<std::size_t>(row)] += length;
+  for (const int column : visited_) {
+    const auto j = static_cast<std::size_t>(column);
+    const double rise = length - shortest_[j];
+    row_price_[static_cast<std::size_t>(row_of_column_[j])] += rise;
+    column_price_[j] -= rise;
+  }
+
+  // Walk the path back, each row passing its old column on to the row before it.
+  int column = path.free_column;
+  if (column < 0) {
+    column = result_[static_cast<std::size_t>(path.exit_row)];
+    result_[static_cast<std::size_t>(path.exit_row)] = -1;
+    if (path.exit_row == row) return;
+  }
+  while (true) {
+    const auto j = static_cast<std::size_t>(column);
+    const int taker = previous_row_[j];
+    row_of_column_[j] = taker;
+    std::swap(column, result_[static_cast<std::size_t>(taker)]);
+    if (taker == row) return;
+  }
+}
+
+AssignmentSolver::Path AssignmentSolver::ShortestPath(int row, std::span<const double> cost,
+                                                      std::size_t columns,
+                                                      std::span<const double> lone_row) {
   shortest_.assign(columns, kForbidden);
   is_visited_.assign(columns, 0);
   visited_.clear();
@@ -40,7 +69,6 @@ void AssignmentSolver::Insert(int row, std::span<const double> cost, std::size_t
   double length = 0.0;  // Of the path to the row being scanned.
   double exit_length = kForbidden;
   int exit_row = -1;
-  int free_column = -1;
   int scanned = row;
   while (true) {
     const auto r = static_cast<std::size_t>(scanned);
@@ -67,42 +95,13 @@ void AssignmentSolver::Insert(int row, std::span<const double> cost, std::size_t
         nearest = static_cast<int>(j);
       }
     }
-    if (nearest < 0) {
-      length = exit_length;
-      break;
-    }
+    if (nearest < 0) return {.length = exit_length, .exit_row = exit_row};
     length = nearest_length;
     const auto n = static_cast<std::size_t>(nearest);
-    if (row_of_column_[n] < 0) {
-      free_column = nearest;
-      break;
-    }
+    if (row_of_column_[n] < 0) return {.length = length, .free_column = nearest};
     is_visited_[n] = 1;
     visited_.push_back(nearest);
     scanned = row_of_column_[n];
-  }
-
-  row_price_[static_cast<std::size_t>(row)] += length;
-  for (const int column : visited_) {
-    const auto j = static_cast<std::size_t>(column);
-    const double rise = length - shortest_[j];
-    row_price_[static_cast<std::size_t>(row_of_column_[j])] += rise;
-    column_price_[j] -= rise;
-  }
-
-  // Walk the path back, each row passing its old column on to the row before it.
-  int column = free_column;
-  if (column < 0) {
-    column = result_[static_cast<std::size_t>(exit_row)];
-    result_[static_cast<std::size_t>(exit_row)] = -1;
-    if (exit_row == row) return;
-  }
-  while (true) {
-    const auto j = static_cast<std::size_t>(column);
-    const int taker = previous_row_[j];
-    row_of_column_[j] = taker;
-    std::swap(column, result_[static_cast<std::size_t>(taker)]);
-    if (taker == row) return;
   }
 }
 

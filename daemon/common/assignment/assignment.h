@@ -32,8 +32,16 @@ class AssignmentSolver {
                              std::span<const double> lone_row);
 
  private:
+  /// Ends in a free column, or where there is none in the exit of a row.
+  struct Path {
+    double length = 0.0;
+    int free_column = -1;
+    int exit_row = -1;
+  };
   void Insert(int row, std::span<const double> cost, std::size_t columns,
               std::span<const double> lone_row);
+  Path ShortestPath(int row, std::span<const double> cost, std::size_t columns,
+                    std::span<const double> lone_row);
 
   std::vector<double> row_price_, column_price_, shortest_;
   std::vector<int> row_of_column_, previous_row_, visited_, result_;
@@ -58,6 +66,9 @@ class ClusteredAssignmentSolver {
 
  private:
   int Root(int node);
+  void SortByCluster(std::span<const SparsePair> pairs, std::size_t rows, std::size_t columns,
+                     std::span<const double> lone_row);
+  void SolveCluster(std::size_t begin, std::size_t end, std::span<const double> lone_row);
 
   AssignmentSolver dense_;
   std::vector<SparsePair> sorted_;

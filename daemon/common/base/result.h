@@ -23,11 +23,11 @@ class [[nodiscard]] Result {
   T& operator*() { return value(); }
   T* operator->() { return &value(); }
 
-  const T& value() const {
+  [[nodiscard]] const T& value() const {
     V2VOUCH_CHECK(*this);
     return *std::get_if<T>(&content_);
   }
-  T& value() {
+  [[nodiscard]] T& value() {
     V2VOUCH_CHECK(*this);
     return *std::get_if<T>(&content_);
   }

@@ -18,7 +18,7 @@ constexpr std::array<CheckInfo, static_cast<std::size_t>(Check::kCount)> kTable{
         "a hidden sender whose claims leave the carried vehicle while its messages break off"},
     CheckInfo{"contested_core", EtsiClass::kNone, false, "v2v/intake/sender_checks",
               "the same core data under two identities"},
-    CheckInfo{"contested_identity", EtsiClass::kNone, false, "v2v/perception/v2v_perception",
+    CheckInfo{"contested_identity", EtsiClass::kNone, false, "v2v/perception/claim_steps",
               "an identity that took over from one that speaks again"},
     CheckInfo{"course_against_path", EtsiClass::kPosition, false, "v2v/intake/path_check",
               "claimed course against the way made good"},

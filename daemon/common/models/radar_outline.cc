@@ -7,28 +7,23 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/models/dual.h"
+#include "daemon/common/models/outline_noise.h"
 
 namespace v2vouch {
 namespace {
 
 using D = Dual<kStateSize + 2>;
 
-// Strong returns lie behind the outline by this much on average, and scatter by so much: bumpers
-// are rounded, plates and lamps lie behind them.
+// Strong returns lie behind the outline by this much on average: bumpers are rounded, plates and
+// lamps lie behind them.
 constexpr double kDepth_m = 0.1;
-constexpr double kDepthSigma_m = 0.3;
 // What lies deeper than the median return by more than this counts less.
 constexpr double kDeep_m = 0.5;
 // From here on the returns are less believed.
 constexpr double kDeepSigmas = 1.5;
 constexpr double kNearSigmas = 3.0;
-// Share of half a silhouette by which the mean of one scan misses its middle, at best.
-constexpr double kMiddleShare = 0.3;
 // Where a ray misses the box, a metre of range weighs as much as so much beside the ray.
 constexpr double kNearer = 0.2;
-// Wheels and a turn that has just begun.
-constexpr double kRateSigma_mps = 0.1;
-constexpr double kYawRateDoubt_radps = 0.05;
 
 // The vehicle's box, with the antenna in its axes.
 struct Box {
@@ -228,28 +223,14 @@ std::optional<Linearized> LinearizeOutline(const StateVector& x, const Extent& e
   out.O(0, 0) = 1.0;
   out.O(1, 1) = half_rad;
 
-  const auto square = [](double a) { return a * a; };
-  const double n = std::max(z.returns, 1);
-  const double n_outline = static_cast<double>(z.outline_count);
-  out.R.setZero(3, 3);
-  out.R(0, 0) = (square(radar.range_sigma_m) + square(kDepthSigma_m)) / depth.count;
-  const double unseen = std::clamp(1.0 - z.visible_share, 0.0, 1.0);
-  out.R(1, 1) = square(radar.azimuth_sigma_rad) / n +
-                square(half_rad) * (std::max(1.0 / (3.0 * n), square(kMiddleShare)) +
-                                    kUnseenLooks * unseen * unseen);
-  const Eigen::Vector2d across(-u.y(), u.x());
-  const double passing_mps =
-      across.x() * (vx.value - antenna.x()) + across.y() * (vy.value - antenna.y());
-  const double lever_m = across.x() * (q.x() - px.value) + across.y() * (q.y() - py.value);
-  const Eigen::Vector2d line_B = R_OB.transpose() * u;
-  const Eigen::Vector2d from_ego = EgoMotionVariances(ego, radar, line_B);
-  out.R(2, 2) = (square(radar.range_rate_sigma_mps) + square(kRateSigma_mps) +
-                 square(passing_mps * radar.azimuth_sigma_rad)) /
-                    n_outline +
-                square(kYawRateDoubt_radps * lever_m) + from_ego[0] + from_ego[1];
-  out.R(2, 2) = std::max(out.R(2, 2), z.covariance(2, 2));
-  const Eigen::Vector2d extent_variance(square(extent.length_sigma_m),
-                                        square(extent.width_sigma_m));
+  out.R = OutlineNoise(ego, radar, z,
+                       {.depth_count = depth.count,
+                        .half_rad = half_rad,
+                        .line_O = u,
+                        .passing_O = {vx.value - antenna.x(), vy.value - antenna.y()},
+                        .lever_O = {q.x() - px.value, q.y() - py.value}});
+  const Eigen::Vector2d extent_variance(Square(extent.length_sigma_m),
+                                        Square(extent.width_sigma_m));
   out.R += out.E * extent_variance.asDiagonal() * out.E.transpose();
   return out;
 }

@@ -22,9 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace v2vouch;
 
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
-
 constexpr char kExamples[] = R"(
 Examples:
   v2vouch-detect street.jpg --model yolov4-tiny.weights --draw seen/
@@ -90,7 +87,7 @@ int LookAtFiles(const Options& options, NetworkDetector& detector) {
   std::vector<std::string> images = options.images;
   const fs::path folder = fs::path(options.truth_path).parent_path();
   if (!options.truth_path.empty()) {
-    if (!ReadTruth(options.truth_path, truth, error)) return Complain(error, kFailed);
+    if (!ReadTruth(options.truth_path, truth, error)) return Complain(error, kExitFailed);
     if (images.empty()) {
       for (const auto& [image, boxes] : truth) images.push_back((folder / image).string());
     }
@@ -100,7 +97,7 @@ int LookAtFiles(const Options& options, NetworkDetector& detector) {
   for (const std::string& image : images) {
     ShowProgress(static_cast<double>(reports.size()) / static_cast<double>(images.size()));
     const cv::Mat picture = ReadPicture(image, error);
-    if (picture.empty()) return Complain(error, kFailed);
+    if (picture.empty()) return Complain(error, kExitFailed);
     const cv::Mat bgr = Degraded(picture, options.degrade);
     const auto started = std::chrono::steady_clock::now();
     PictureReport report{image, 0.0, detector.Look(bgr)};
@@ -111,7 +108,7 @@ int LookAtFiles(const Options& options, NetworkDetector& detector) {
       auto found = truth.find(fs::path(image).lexically_relative(folder).string());
       if (found == truth.end()) found = truth.find(image);
       if (found == truth.end()) {
-        return Complain(image + ": has no row in " + options.truth_path, kFailed);
+        return Complain(image + ": has no row in " + options.truth_path, kExitFailed);
       }
       if (!score) score.emplace();
       AddScore(report.boxes, found->second, *score);
@@ -120,7 +117,7 @@ int LookAtFiles(const Options& options, NetworkDetector& detector) {
       const fs::path file =
           fs::path(options.draw_folder) / fs::path(image).filename().replace_extension(".png");
       if (!WriteAnnotated(file.string(), bgr, report.boxes, images, error)) {
-        return Complain(error, kFailed);
+        return Complain(error, kExitFailed);
       }
     }
     reports.push_back(std::move(report));
@@ -164,21 +161,21 @@ int LookAtLog(const Options& options, const DaemonConfig& config, NetworkDetecto
   DetectLogResult result;
   std::string error;
   if (!DetectLog(options.log, options.out, config, detector, ShowProgress, result, error)) {
-    return Complain(error, kFailed);
+    return Complain(error, kExitFailed);
   }
   if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "\r\033[K");
   std::cout << LogReport(result, options.as_json);
   const std::string why = WhyNothingSeen(result, config);
-  return why.empty() ? 0 : Complain(options.log + ": " + why, kFailed);
+  return why.empty() ? 0 : Complain(options.log + ": " + why, kExitFailed);
 }
 
 int Run(const Options& options) {
   const bool has_pictures = !options.images.empty() || !options.truth_path.empty();
   if (has_pictures == !options.log.empty()) {
-    return Complain("wants pictures, --truth or --log; see --help", kUsage);
+    return Complain("wants pictures, --truth or --log; see --help", kExitUsage);
   }
   if (options.log.empty() != options.out.empty()) {
-    return Complain("--log and --out go together", kUsage);
+    return Complain("--log and --out go together", kExitUsage);
   }
   DaemonConfig config;
   std::vector<std::string> problems;
@@ -197,12 +194,12 @@ int Run(const Options& options) {
                        ", so no picture would be looked at");
     detector.reset();
   }
-  for (const std::string& problem : problems) Complain(problem, kUsage);
-  if (!detector) return kUsage;
+  for (const std::string& problem : problems) Complain(problem, kExitUsage);
+  if (!detector) return kExitUsage;
   if (!options.draw_folder.empty()) {
     std::error_code failed;
     fs::create_directories(options.draw_folder, failed);
-    if (failed) return Complain(options.draw_folder + ": " + failed.message(), kFailed);
+    if (failed) return Complain(options.draw_folder + ": " + failed.message(), kExitFailed);
   }
   return options.log.empty() ? LookAtFiles(options, *detector)
                              : LookAtLog(options, config, *detector);
@@ -237,6 +234,6 @@ int main(int argc, char** argv) {
   try {
     return Run(options);
   } catch (const std::exception& error) {
-    return Complain(error.what(), kFailed);
+    return Complain(error.what(), kExitFailed);
   }
 }

@@ -2,6 +2,7 @@
 // v2vouch-doctor: what is wrong with this set-up, and what to do about it.
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -83,10 +84,7 @@ void Print(const v2vouch::AdviceList& findings, bool as_json, bool is_good) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  v2vouch::GuardStandardStreams("v2vouch-doctor");
+int Run(int argc, char** argv) {
   std::string config_path;
   std::string url;
   std::string v2v_url;
@@ -133,4 +131,16 @@ int main(int argc, char** argv) {
       findings, [](const Advice& each) { return each.state == Advice::State::kBad; });
   Print(findings, wants_json, is_good);
   return is_good ? v2vouch::kExitGood : v2vouch::kExitFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-doctor");
+  try {
+    return Run(argc, argv);
+  } catch (const std::exception& error) {  // Out of memory, a disk that vanished.
+    std::fprintf(stderr, "v2vouch-doctor: %s\n", error.what());
+    return v2vouch::kExitFailed;
+  }
 }

@@ -231,7 +231,10 @@ std::optional<std::int64_t> WriteCsv(const std::string& log, const std::string& 
     const std::size_t count = columns->list ? message.fields[*columns->list].size() : 1;
     for (std::size_t row = 0; row < count; ++row, ++rows) {
       std::string line = Exact(ToMicros(event.received));
-      for (const Path& path : columns->paths) line += ',' + ValueAt(message, path, row);
+      for (const Path& path : columns->paths) {
+        line += ',';
+        line += ValueAt(message, path, row);
+      }
       line += '\n';
       if (std::fputs(line.c_str(), out) < 0) {
         error = "the table cannot be written";

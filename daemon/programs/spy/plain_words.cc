@@ -45,6 +45,49 @@ std::string SourcesOf(const track_t& track, std::int64_t now_us) {
   return text;
 }
 
+std::string NoticeWords(const notice_t& notice) {
+  std::string line = Lower(Printable(notice.name));
+  if (!notice.channel.empty()) line += " (" + Printable(notice.channel, 63) + ")";
+  if (std::isfinite(notice.value)) line += Format(" %.3g", notice.value);
+  return line + ": " + Printable(notice.advice, 400);
+}
+
+void AddInputWords(const input_status_t& input, std::vector<std::string>& wrong,
+                   std::vector<std::string>& rest) {
+  const std::string name = Printable(input.channel, 63);
+  const std::int64_t refused = input.received - input.accepted;
+  if (input.received == 0) {
+    wrong.push_back(name + " has never sent anything.");
+  } else if (input.is_silent != 0) {
+    wrong.push_back(name + " is silent: its newest message is " + DurationText(input.age_s) +
+                    " old.");
+  } else {
+    std::string line = name + Format(": %.1f per second, newest ", input.rate_hz) +
+                       DurationText(input.age_s) + " old";
+    if (refused > 0) line += Format(", %lld refused", static_cast<long long>(refused));
+    if (input.gaps > 0)
+      line += Format(", %lld lost on the way", static_cast<long long>(input.gaps));
+    rest.push_back(line + '.');
+  }
+}
+
+void AddDropWords(const daemon_status_t& status, std::vector<std::string>& wrong) {
+  if (status.kernel_drops > 0) {
+    wrong.push_back(
+        Format("The kernel has dropped %lld datagrams: raise net.core.rmem_max and "
+               "recv_buf_size.",
+               static_cast<long long>(status.kernel_drops)));
+  }
+  if (status.queue_drops_own > 0) {
+    wrong.push_back(Format("%lld own-sensor messages were dropped: the daemon does not keep up.",
+                           static_cast<long long>(status.queue_drops_own)));
+  }
+  if (status.queue_drops_bsm > 0) {
+    wrong.push_back(Format("%lld BSMs were dropped: more than the daemon can take.",
+                           static_cast<long long>(status.queue_drops_bsm)));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> TrackTable(std::span<const std::uint8_t> message) {
@@ -94,49 +137,15 @@ std::vector<std::string> StatusWords(std::span<const std::uint8_t> message) {
   const daemon_status_t& status = *decoded;
   std::vector<std::string> wrong;
   std::vector<std::string> rest;
-  for (const notice_t& notice : status.notices) {
-    std::string line = Lower(Printable(notice.name));
-    if (!notice.channel.empty()) line += " (" + Printable(notice.channel, 63) + ")";
-    if (std::isfinite(notice.value)) line += Format(" %.3g", notice.value);
-    wrong.push_back(line + ": " + Printable(notice.advice, 400));
-  }
-  for (const input_status_t& input : status.inputs) {
-    const std::string name = Printable(input.channel, 63);
-    const std::int64_t refused = input.received - input.accepted;
-    if (input.received == 0) {
-      wrong.push_back(name + " has never sent anything.");
-    } else if (input.is_silent != 0) {
-      wrong.push_back(name + " is silent: its newest message is " + DurationText(input.age_s) +
-                      " old.");
-    } else {
-      std::string line = name + Format(": %.1f per second, newest ", input.rate_hz) +
-                         DurationText(input.age_s) + " old";
-      if (refused > 0) line += Format(", %lld refused", static_cast<long long>(refused));
-      if (input.gaps > 0)
-        line += Format(", %lld lost on the way", static_cast<long long>(input.gaps));
-      rest.push_back(line + '.');
-    }
-  }
+  for (const notice_t& notice : status.notices) wrong.push_back(NoticeWords(notice));
+  for (const input_status_t& input : status.inputs) AddInputWords(input, wrong, rest);
   for (const refusal_t& refusal : status.refusal_details) {
     rest.push_back(Format("%lld of ", static_cast<long long>(refusal.count)) +
                    Printable(refusal.channel, 63) +
                    " refused: " + Lower(Printable(refusal.reason)) +
                    (refusal.field.empty() ? "" : ", field " + Printable(refusal.field)) + '.');
   }
-  if (status.kernel_drops > 0) {
-    wrong.push_back(
-        Format("The kernel has dropped %lld datagrams: raise net.core.rmem_max and "
-               "recv_buf_size.",
-               static_cast<long long>(status.kernel_drops)));
-  }
-  if (status.queue_drops_own > 0) {
-    wrong.push_back(Format("%lld own-sensor messages were dropped: the daemon does not keep up.",
-                           static_cast<long long>(status.queue_drops_own)));
-  }
-  if (status.queue_drops_bsm > 0) {
-    wrong.push_back(Format("%lld BSMs were dropped: more than the daemon can take.",
-                           static_cast<long long>(status.queue_drops_bsm)));
-  }
+  AddDropWords(status, wrong);
   if (status.ego_gnss_suspect != 0) {
     wrong.push_back("The ego's own GNSS jumped or disagrees: the V2V side stands still.");
   }

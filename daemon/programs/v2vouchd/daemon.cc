@@ -10,21 +10,20 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/common/base/angle.h"
 #include "daemon/programs/v2vouchd/background_publisher.h"
+#include "daemon/programs/v2vouchd/daemon_log.h"
+#include "daemon/programs/v2vouchd/dropped_datagrams.h"
 #include "daemon/programs/v2vouchd/foreign_outputs.h"
 #include "daemon/programs/v2vouchd/latency_meter.h"
 #include "daemon/programs/v2vouchd/message_queue.h"
 #include "daemon/programs/v2vouchd/receiver.h"
 #include "daemon/programs/v2vouchd/trust_keeper.h"
 #include "daemon/programs/v2vouchd/watchdog.h"
-#include "daemon/rim/engine/calibration_in_force.h"
 #include "daemon/rim/engine/engine.h"
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/io/service_notifier.h"
 #include "daemon/rim/io/socket_figures.h"
 #include "daemon/rim/io/stop_signal.h"
-#include "daemon/rim/lcm_packets/packet_fault.h"
 
 namespace v2vouch {
 namespace {
@@ -35,12 +34,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPopTimeout{20};
 constexpr std::chrono::seconds kHousekeeping{1};
 constexpr milliseconds kStatusAtLatest{1100};  // Where no message comes.
-constexpr int kMostRefusalLines = 20;          // Per second.
 constexpr milliseconds kSuspended{500};        // Between two turns of the loop.
-
-// In the place of a channel, for what never became a message.
-const std::string kBusName = "(bus)";
-const std::string kV2vBusName = "(v2v bus)";
 
 // Arrival on a clock that is never set.
 Timestamp ArrivalTime(Clock::time_point at) {
@@ -89,15 +83,7 @@ class Daemon {
       std::this_thread::sleep_for(kPopTimeout);
     }
     manager_.Send("STATUS=running");
-    spdlog::info("event=started version={} inputs={}", V2VOUCH_VERSION, engine_.channels().size());
-    if (ports_.size() == 2 && ports_[0] == ports_[1] && ports_[0] != 0) {
-      spdlog::warn(
-          "event=v2v_url_shares_port port={} hint=\"another group on the same port separates "
-          "nothing; "
-          "give BSMs a port of their own\"",
-          ports_[0]);
-    }
-    LogCalibration();
+    DaemonLog::Start(config_, engine_.channels().size(), ports_);
     engine_.Start(outbox_);
     last_published_ = Clock::now();
     Publish();
@@ -116,15 +102,11 @@ class Daemon {
   LcmBus::Handler SinkOf(const wire::InputChannel& channel) {
     return
         [this, channel](std::span<const std::uint8_t> bytes, std::size_t size, Timestamp received) {
-          Arrival arrival;
-          arrival.channel = channel.name;
-          arrival.received = received;
-          arrival.arrived = Clock::now();
-          if (bytes.size() == size) {
-            arrival.content = Arrival::Bytes(bytes.begin(), bytes.end());
-          } else {
-            arrival.content = Refusal(Reason::kTooLarge);
-          }
+          Arrival arrival{.channel = channel.name,
+                          .content = Refusal(Reason::kTooLarge),
+                          .received = received,
+                          .arrived = Clock::now()};
+          if (bytes.size() == size) arrival.content = Arrival::Bytes(bytes.begin(), bytes.end());
           if (channel.is_v2v()) {
             queue_.PushBsm(std::move(arrival));
           } else if (channel.kind == wire::InputKind::kCameraImage) {
@@ -182,13 +164,14 @@ class Daemon {
       Publish();
     }
     if (trust_.IsDue(now)) trust_.Keep(engine_.TrustToKeep(), now);
-    LogNotices();
+    DaemonLog::Notices(engine_.TakeNoticeChanges());
     if (now - last_housekeeping_ >= kHousekeeping) {
       last_housekeeping_ = now;
-      TakeDropped();
+      dropped_.Take(*own_bus_, v2v_bus_.get());
       RefreshFigures();
-      LogRefusals();
-      LogMounts();
+      log_.Refusals(engine_.refusal_details());
+      log_.QueueDrops(queue_.own_drops(), queue_.bsm_drops());
+      log_.Mounts(config_.perception.vehicle.radars, engine_.mounts());
       ReportWaiting();
     }
   }
@@ -242,40 +225,6 @@ class Daemon {
     return notices;
   }
 
-  // What the receive paths threw away before there was a message.
-  void TakeDropped() {
-    std::vector<wire::DroppedDatagrams> before = std::move(dropped_);
-    dropped_.clear();
-    TakeDropped(*own_bus_, kBusName, own_rejoins_);
-    if (v2v_bus_) TakeDropped(*v2v_bus_, kV2vBusName, v2v_rejoins_);
-    for (const wire::DroppedDatagrams& now : dropped_) {
-      std::uint64_t told = 0;
-      for (const wire::DroppedDatagrams& then : before) {
-        if (then.bus == now.bus && then.reason == now.reason && then.field == now.field) {
-          told = then.count;
-        }
-      }
-      if (now.count == told) continue;
-      spdlog::warn("event=refused channel={} reason={} field=\"{}\" count={} total={}", now.bus,
-                   now.reason, now.field, now.count - told, now.count);
-    }
-  }
-
-  void TakeDropped(const Receiver& bus, const std::string& name, std::int64_t& rejoins) {
-    const lcm_packets::PacketCounts counts = bus.refused();
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-      if (counts[i] == 0) continue;
-      const auto fault = lcm_packets::NameOf(static_cast<lcm_packets::PacketFault>(i));
-      dropped_.push_back({name, std::string(fault.reason), std::string(fault.field), counts[i]});
-    }
-    if (bus.rejoins() == rejoins) return;
-    rejoins = bus.rejoins();
-    spdlog::warn(
-        "event=multicast_rejoined bus=\"{}\" total={} hint=\"the interface had gone or lost its "
-        "address\"",
-        name, rejoins);
-  }
-
   void RefreshFigures() {
     const SocketFigures sockets = ReadSocketFigures(ports_);
     engine_.SetShellFigures({.queue_drops_own = queue_.own_drops(),
@@ -286,94 +235,17 @@ class Daemon {
                              .latencies = {queue_wait_.Report(), step_.Report(),
                                            input_to_list_.Report(), image_to_boxes_.Report()},
                              .notices = Notices(),
-                             .dropped = dropped_});
-  }
-
-  // One line per channel, reason and field and second at most, and not too many in one second; the
-  // others have their turn in the next.
-  void LogRefusals() {
-    const std::vector<RefusalTable::Row>& rows = engine_.refusal_details();
-    logged_.resize(rows.size(), 0);
-    int lines = 0;
-    for (std::size_t n = 0; n < rows.size() && lines < kMostRefusalLines; ++n) {
-      const std::size_t i = next_refusal_ % rows.size();
-      ++next_refusal_;
-      const RefusalTable::Row& row = rows[i];
-      if (row.count == logged_[i]) continue;
-      spdlog::warn("event=refused channel={} reason={} field=\"{}\" count={} total={}", row.channel,
-                   ReasonName(row.refusal.reason), row.FieldText(), row.count - logged_[i],
-                   row.count);
-      logged_[i] = row.count;
-      ++lines;
-    }
-    const std::int64_t drops = queue_.own_drops() + queue_.bsm_drops();
-    if (drops != logged_drops_) {
-      spdlog::warn("event=queue_full own={} bsm={}", queue_.own_drops(), queue_.bsm_drops());
-      logged_drops_ = drops;
-    }
-  }
-
-  void LogCalibration() {
-    const auto count = [this](CalibrationVerdict verdict) {
-      return CountVerdicts(config_, verdict);
-    };
-    spdlog::info(
-        "event=calibration source=\"{}\" estimated={} weak={} prior={} at_bound={} rejected={}",
-        CalibrationTitle(config_), count(CalibrationVerdict::kEstimated),
-        count(CalibrationVerdict::kWeak), count(CalibrationVerdict::kPrior),
-        count(CalibrationVerdict::kAtBound), count(CalibrationVerdict::kRejected));
-  }
-
-  // One line when a radar is found turned, one when it sits right again.
-  void LogMounts() {
-    const std::vector<RadarConfig>& radars = config_.perception.vehicle.radars;
-    moved_.resize(radars.size(), false);
-    for (std::size_t i = 0; i < radars.size(); ++i) {
-      const MountVerdict& mount = engine_.mounts()[i];
-      if (mount.has_moved == moved_[i]) continue;
-      moved_[i] = mount.has_moved;
-      const double correction_deg = ToDegrees(mount.yaw_correction_rad);
-      const double sigma_deg = ToDegrees(mount.yaw_sigma_rad);
-      if (mount.has_moved) {
-        spdlog::warn(
-            "event=mount_moved sensor=radar_{} yaw_correction_deg={:.2f} sigma_deg={:.2f} "
-            "hint=\"check the mount and calibrate again\"",
-            LowerCaseName(radars[i].name), correction_deg, sigma_deg);
-      } else {
-        spdlog::info("event=mount_right sensor=radar_{} yaw_correction_deg={:.2f} sigma_deg={:.2f}",
-                     LowerCaseName(radars[i].name), correction_deg, sigma_deg);
-      }
-    }
-  }
-
-  void LogNotices() {
-    for (const NoticeBoard::Change& change : engine_.TakeNoticeChanges()) {
-      const wire::NoticeStatus& notice = change.notice;
-      if (change.has_begun) {
-        spdlog::warn("event={} channel={} value={:.3f} hint=\"{}\"", notice.name, notice.channel,
-                     notice.value, notice.advice);
-      } else {
-        spdlog::info("event={}_ended channel={}", notice.name, notice.channel);
-      }
-    }
+                             .dropped = dropped_.rows()});
   }
 
   void ReportWaiting() {
-    Report(*own_bus_, config_.lcm.url, reported_failures_);
-    if (v2v_bus_) Report(*v2v_bus_, config_.lcm.v2v_url, reported_v2v_failures_);
-  }
-
-  static void Report(const Receiver& bus, const std::string& url, int& reported) {
-    const int failures = bus.failures();
-    if (bus.is_open() || failures == 0 || failures == reported) return;
-    spdlog::warn("event=no_lcm url=\"{}\" attempt={} hint=\"is there a multicast route?\"", url,
-                 failures);
-    reported = failures;
+    log_.Waiting(0, *own_bus_, config_.lcm.url);
+    if (v2v_bus_) log_.Waiting(1, *v2v_bus_, config_.lcm.v2v_url);
   }
 
   DaemonSummary Summary() {
-    TakeDropped();
-    summary_.dropped = dropped_;
+    dropped_.Take(*own_bus_, v2v_bus_.get());
+    summary_.dropped = dropped_.rows();
     summary_.accepted = engine_.accepted();
     summary_.withheld_lists = engine_.withheld();
     summary_.queue_drops_own = queue_.own_drops();
@@ -398,19 +270,12 @@ class Daemon {
   LatencyMeter input_to_list_{"input_to_list"};  // From the network: its boxes to the list.
   LatencyMeter image_to_boxes_{"image_to_boxes"};
   DaemonSummary summary_;
-  std::vector<std::uint64_t> logged_;  // Of each row of refusals, what the log has.
-  std::size_t next_refusal_ = 0;
-  std::int64_t logged_drops_ = 0;
-  int reported_failures_ = 0;
-  int reported_v2v_failures_ = 0;
+  DaemonLog log_;
   ForeignOutputs foreign_;
   std::int64_t foreign_before_ = 0;
   std::int64_t bsm_drops_before_ = 0;
-  std::vector<wire::DroppedDatagrams> dropped_;  // Since start.
-  std::int64_t own_rejoins_ = 0;
-  std::int64_t v2v_rejoins_ = 0;
+  DroppedDatagramTable dropped_;
   std::vector<int> ports_;  // That we receive on.
-  std::vector<bool> moved_;
   int stale_round_ = 0;
   Clock::time_point last_list_{};
   Clock::time_point last_tick_{};

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <iostream>
 
 #include "daemon/programs/view/live_source.h"
@@ -151,10 +152,7 @@ int Run(const Options& options, const v2vouch::DaemonConfig& config) {
   return kExitGood;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  v2vouch::GuardStandardStreams("v2vouch-view");
+int ReadAndRun(int argc, char** argv) {
   Options options;
   CLI::App app("Shows what the daemon sees, live or from a log: a page and Foxglove's protocol.");
   app.footer(kExamples);
@@ -183,4 +181,16 @@ int main(int argc, char** argv) {
   }
   v2vouch::HandleStopSignals();
   return Run(options, config);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  v2vouch::GuardStandardStreams("v2vouch-view");
+  try {
+    return ReadAndRun(argc, argv);
+  } catch (const std::exception& error) {  // Out of memory, a log that vanished.
+    std::fprintf(stderr, "v2vouch-view: %s\n", error.what());
+    return v2vouch::kExitFailed;
+  }
 }

@@ -25,12 +25,10 @@ class YamlWriter {
       if (value) Field(key, *value);
     } else if constexpr (std::is_same_v<T, bool>) {
       Line(key, value ? "true" : "false");
-    } else if constexpr (std::is_same_v<T, double>) {
+    } else if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::string>) {
       Line(key, Scalar(value));
     } else if constexpr (std::integral<T>) {
       Line(key, std::to_string(value));
-    } else if constexpr (std::is_same_v<T, std::string>) {
-      Line(key, Scalar(value));
     } else if constexpr (kIsVector<T>) {
       List(key, value);
     } else {

@@ -92,14 +92,9 @@ std::string KeyOf(const wire::InputChannel& channel) {
   return "lcm.channels.own_bsm";
 }
 
-}  // namespace
-
-void CheckConfig(const DaemonConfig& config, const std::string& name,
-                 std::vector<std::string>& problems) {
-  Checks checks(name, problems);
+void CheckChannels(const DaemonConfig& config, Checks& checks) {
   const VehicleConfig& vehicle = config.perception.vehicle;
   const wire::ChannelNames& names = config.lcm.channels;
-
   for (const auto& channel : wire::InputChannels(vehicle, names)) {
     checks.Channel(KeyOf(channel), channel.name);
   }
@@ -116,25 +111,26 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
   checks.Channel("lcm.channels.bsm_verdict", names.bsm_verdict);
   checks.Channel("lcm.channels.status", names.status);
   checks.Channel("lcm.channels.config", names.config);
+}
 
+template <class Sensor>
+void CheckRanges(const std::string& list, const std::vector<Sensor>& sensors, Checks& checks) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (sensors[i].min_range_m >= sensors[i].max_range_m) {
+      checks.Problem(list + "[" + std::to_string(i) + "].min_range_m", "must be below max_range_m");
+    }
+  }
+}
+
+void CheckVehicle(const VehicleConfig& vehicle, Checks& checks) {
   if (!IsVehicleId(vehicle.id)) {
     checks.Problem("vehicle.id", "must have at most 64 printable ASCII characters");
   }
   CheckSensors("vehicle.radars", vehicle.radars, checks);
   CheckSensors("vehicle.cameras", vehicle.cameras, checks);
   CheckSensors("vehicle.objects", vehicle.objects, checks);
-  for (std::size_t i = 0; i < vehicle.objects.size(); ++i) {
-    if (vehicle.objects[i].min_range_m >= vehicle.objects[i].max_range_m) {
-      checks.Problem("vehicle.objects[" + std::to_string(i) + "].min_range_m",
-                     "must be below max_range_m");
-    }
-  }
-  for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
-    if (vehicle.radars[i].min_range_m >= vehicle.radars[i].max_range_m) {
-      checks.Problem("vehicle.radars[" + std::to_string(i) + "].min_range_m",
-                     "must be below max_range_m");
-    }
-  }
+  CheckRanges("vehicle.objects", vehicle.objects, checks);
+  CheckRanges("vehicle.radars", vehicle.radars, checks);
   for (std::size_t i = 0; i < vehicle.cameras.size(); ++i) {
     const std::size_t count = vehicle.cameras[i].distortion.size();
     if (count != 0 && count != 4 && count != 5) {
@@ -142,6 +138,15 @@ void CheckConfig(const DaemonConfig& config, const std::string& name,
                      "must hold k1, k2, p1, p2 and perhaps k3, or nothing");
     }
   }
+}
+
+}  // namespace
+
+void CheckConfig(const DaemonConfig& config, const std::string& name,
+                 std::vector<std::string>& problems) {
+  Checks checks(name, problems);
+  CheckChannels(config, checks);
+  CheckVehicle(config.perception.vehicle, checks);
   const IntakeConfig& v2v = config.perception.v2v;
   if (v2v.min_position_sigma_m > v2v.max_position_sigma_m) {
     checks.Problem("v2v.min_position_sigma_m", "must be at most max_position_sigma_m");

@@ -57,7 +57,9 @@ class LogReader {
   LogReader() = default;
 
   bool Have(std::size_t bytes);
-  const std::uint8_t* At(std::size_t offset) const { return window_.data() + begin_ + offset; }
+  [[nodiscard]] const std::uint8_t* At(std::size_t offset) const {
+    return window_.data() + begin_ + offset;
+  }
   bool IsBelievable(std::size_t offset);
   bool HidesAnEvent(std::size_t length);
   void SkipDamage();

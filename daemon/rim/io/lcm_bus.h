@@ -12,7 +12,7 @@
 #include "daemon/common/base/time.h"
 #include "daemon/rim/lcm_packets/packet_fault.h"
 
-typedef struct _lcm_t lcm_t;
+typedef struct _lcm_t lcm_t;  // NOLINT(bugprone-reserved-identifier): liblcm's own name.
 
 namespace v2vouch {
 

@@ -181,22 +181,50 @@ void Writer::EmitSummary() {
     std::uint64_t start, length;
   };
   std::vector<Group> groups;
-  const auto end_group = [&](Opcode opcode, std::uint64_t start) {
+  const auto emit_group = [&](Opcode opcode, void (Writer::*emit)()) {
+    const std::uint64_t start = offset_;
+    (this->*emit)();
     if (offset_ > start) groups.push_back({opcode, start, offset_ - start});
   };
-  std::uint64_t start = offset_;
+  emit_group(Opcode::kSchema, &Writer::EmitSchemas);
+  emit_group(Opcode::kChannel, &Writer::EmitChannels);
+  emit_group(Opcode::kStatistics, &Writer::EmitStatistics);
+  emit_group(Opcode::kChunkIndex, &Writer::EmitChunkIndexes);
+  emit_group(Opcode::kMetadataIndex, &Writer::EmitMetadataIndexes);
+
+  const std::uint64_t offsets_start = offset_;
+  Fields fields(content_);
+  for (const Group& group : groups) {
+    fields.Put(static_cast<std::uint8_t>(group.opcode));
+    fields.Put(group.start);
+    fields.Put(group.length);
+    EmitRecord(Opcode::kSummaryOffset);
+  }
+  // The CRC covers the footer up to itself.
+  std::vector<std::uint8_t> footer;
+  PutRecordHeader(footer, Opcode::kFooter, 20);
+  Fields end(footer);
+  end.Put(summary_start);
+  end.Put(offsets_start);
+  end.Put(Crc32(footer, crc_));
+  Emit(footer);
+}
+
+void Writer::EmitSchemas() {
   for (const Schema& schema : schemas_) {
     PutSchema(content_, schema);
     EmitRecord(Opcode::kSchema);
   }
-  end_group(Opcode::kSchema, start);
-  start = offset_;
+}
+
+void Writer::EmitChannels() {
   for (const Channel& channel : channels_) {
     PutChannel(content_, channel);
     EmitRecord(Opcode::kChannel);
   }
-  end_group(Opcode::kChannel, start);
-  start = offset_;
+}
+
+void Writer::EmitStatistics() {
   Fields fields(content_);
   fields.Put(messages_);
   fields.Put(static_cast<std::uint16_t>(schemas_.size()));
@@ -212,8 +240,10 @@ void Writer::EmitSummary() {
     fields.Put(counts_[i]);
   }
   EmitRecord(Opcode::kStatistics);
-  end_group(Opcode::kStatistics, start);
-  start = offset_;
+}
+
+void Writer::EmitChunkIndexes() {
+  Fields fields(content_);
   for (const ChunkEntry& chunk : chunks_) {
     fields.Put(chunk.start_ns);
     fields.Put(chunk.end_ns);
@@ -230,31 +260,16 @@ void Writer::EmitSummary() {
     fields.Put(chunk.size);
     EmitRecord(Opcode::kChunkIndex);
   }
-  end_group(Opcode::kChunkIndex, start);
-  start = offset_;
+}
+
+void Writer::EmitMetadataIndexes() {
+  Fields fields(content_);
   for (const MetadataEntry& entry : metadata_) {
     fields.Put(entry.offset);
     fields.Put(entry.length);
     fields.Put(std::string_view(entry.name));
     EmitRecord(Opcode::kMetadataIndex);
   }
-  end_group(Opcode::kMetadataIndex, start);
-
-  const std::uint64_t offsets_start = offset_;
-  for (const Group& group : groups) {
-    fields.Put(static_cast<std::uint8_t>(group.opcode));
-    fields.Put(group.start);
-    fields.Put(group.length);
-    EmitRecord(Opcode::kSummaryOffset);
-  }
-  // The CRC covers the footer up to itself.
-  std::vector<std::uint8_t> footer;
-  PutRecordHeader(footer, Opcode::kFooter, 20);
-  Fields end(footer);
-  end.Put(summary_start);
-  end.Put(offsets_start);
-  end.Put(Crc32(footer, crc_));
-  Emit(footer);
 }
 
 }  // namespace v2vouch::mcap

@@ -64,6 +64,11 @@ class Writer {
   void Emit(std::span<const std::uint8_t> bytes);
   void EmitRecord(Opcode opcode);
   void EmitSummary();
+  void EmitSchemas();
+  void EmitChannels();
+  void EmitStatistics();
+  void EmitChunkIndexes();
+  void EmitMetadataIndexes();
 
   Sink sink_;
   WriterOptions options_;

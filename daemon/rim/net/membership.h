@@ -19,7 +19,7 @@ class Membership {
   bool Renew();
 
  private:
-  int Set(int option, int device) const;
+  [[nodiscard]] int Set(int option, int device) const;
 
   int descriptor_;
   std::uint32_t group_;

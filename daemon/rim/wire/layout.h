@@ -82,7 +82,7 @@ constexpr Layout MakeLayout(std::string_view name, std::span<const Field> fields
   return {name, fields, max_bytes, min_bytes};
 }
 
-/// The layout of a type of lcmtypes/ (layout_table.cc); a test compares them with the .lcm files.
+/// The layout of a type of lcmtypes/ (layout_limits.h); a test compares them with the .lcm files.
 template <class T>
 const Layout& LayoutOf();
 

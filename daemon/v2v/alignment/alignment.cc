@@ -7,19 +7,13 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/base/check.h"
+#include "daemon/v2v/alignment/fix_quality.h"
 #include "daemon/v2v/alignment/flat_earth.h"
 
 namespace v2vouch {
 namespace {
 
 constexpr double kLattice_rad = FromDegrees(0.01);
-// A fix that says nothing of its accuracy; phone grade (95 % about 5 m under open sky).
-constexpr double kUnknownSigma_m = 2.5;
-// Beyond this a fix does not help to place a vehicle 100 m away.
-constexpr double kUselessSigma_m = 50.0;
-constexpr double kUnknownVelocitySigma_mps = 0.2;
-constexpr double kMinVelocitySigma_mps = 0.05;
-constexpr double kUnknownYawSigma_rad = 0.05;
 constexpr double kAgree_s = 1.0;
 constexpr double kNewPlace_s = 10.0;
 constexpr double kVouched_s = 5.0;
@@ -40,39 +34,6 @@ Wgs84 LatticePoint(const Wgs84& near) {
   return {std::clamp(latitude, -kPi / 2.0, kPi / 2.0), WrapAngle(longitude), 0.0};
 }
 
-// Horizontal covariance, floored; nullopt where the figures cannot be a covariance or say that the
-// fix is worth nothing.
-std::optional<Eigen::Matrix2d> UsableCovariance(const GnssFix& fix, double floor_m) {
-  Eigen::Matrix2d C = fix.covariance_enu.topLeftCorner<2, 2>();
-  if (!C.allFinite()) return std::nullopt;
-  // One axis known: as good as the other, for lack of better.
-  if (C(0, 0) == 0.0 && C(1, 1) > 0.0) C(0, 0) = C(1, 1);
-  if (C(1, 1) == 0.0 && C(0, 0) > 0.0) C(1, 1) = C(0, 0);
-  if (C.isZero(0.0)) C = kUnknownSigma_m * kUnknownSigma_m * Eigen::Matrix2d::Identity();
-  C = (0.5 * (C + C.transpose())).eval();
-  const double mean = 0.5 * C.trace();
-  const double spread = std::hypot(0.5 * (C(0, 0) - C(1, 1)), C(0, 1));
-  const double smallest = mean - spread;
-  // Rounding may leave a small eigenvalue a little below 0; more than that is no covariance.
-  if (C(0, 0) < 0.0 || C(1, 1) < 0.0 || smallest < -1e-6 * mean) return std::nullopt;
-  if (mean + spread > kUselessSigma_m * kUselessSigma_m) return std::nullopt;
-  if (smallest < floor_m * floor_m) {
-    C += (floor_m * floor_m - smallest) * Eigen::Matrix2d::Identity();
-  }
-  return C;
-}
-
-bool HasPosition(const GnssFix& fix) {
-  return fix.fix_type != FixType::kNone && std::isfinite(fix.position.latitude_rad) &&
-         std::isfinite(fix.position.longitude_rad) && std::isfinite(fix.position.height_m) &&
-         std::abs(fix.position.latitude_rad) <= kPi / 2.0 &&
-         std::abs(fix.position.longitude_rad) <= 2.0 * kPi;
-}
-
-double SigmaOr(double sigma, double fallback, double floor) {
-  return std::isfinite(sigma) && sigma > 0.0 ? std::max(sigma, floor) : fallback;
-}
-
 }  // namespace
 
 Alignment::Alignment(const AlignmentConfig& config, const VehicleConfig& vehicle)
@@ -86,26 +47,6 @@ Timestamp Alignment::FixTime(const GnssFix& fix) const {
 }
 
 void Alignment::Vouch(Timestamp at) { vouched_ = vouched_ ? std::max(*vouched_, at) : at; }
-
-FixInPlane Alignment::InPlane(const LocalPlane& plane, const GnssFix& fix,
-                              const Eigen::Matrix2d& covariance_en, double yaw_floor_rad) {
-  // East and north at the fix are not quite L's axes: meridians converge.
-  const double turn = ConvergenceAt(plane, fix.position);
-  const Eigen::Matrix2d R_LN = Pose<LocalEnu, LocalEnu>(0.0, 0.0, turn).rotation();
-  FixInPlane in_plane;
-  in_plane.p_L = Flat(plane, fix.position);
-  in_plane.covariance = R_LN * covariance_en * R_LN.transpose();
-  if (fix.velocity_en_mps && fix.velocity_en_mps->allFinite()) {
-    in_plane.v_L = R_LN * *fix.velocity_en_mps;
-    in_plane.velocity_sigma_mps =
-        SigmaOr(fix.velocity_sigma_mps, kUnknownVelocitySigma_mps, kMinVelocitySigma_mps);
-  }
-  if (fix.yaw_rad && std::isfinite(*fix.yaw_rad)) {
-    in_plane.yaw_L_rad = WrapAngle(*fix.yaw_rad + turn);
-    in_plane.yaw_sigma_rad = SigmaOr(fix.yaw_sigma_rad, kUnknownYawSigma_rad, yaw_floor_rad + 1e-4);
-  }
-  return in_plane;
-}
 
 // The plane is good near its origin only: half round the earth it folds back on itself.
 bool Alignment::IsFar(const LocalPlane& plane, const GnssFix& fix) const {
@@ -137,7 +78,7 @@ std::optional<Refusal> Alignment::OnFix(const GnssFix& fix, const EgoState& ego)
 
   filter_.Predict(ego, noise_);
   ReanchorIfFar();
-  const FixInPlane in_plane = InPlane(plane_, fix, *covariance_en);
+  const FixInPlane in_plane = InPlane(plane_, fix, *covariance_en, config_.yaw_floor_rad);
   const std::string_view contradiction =
       IsFar(plane_, fix) ? std::string_view("latitude_rad and longitude_rad")
                          : filter_.Contradiction(in_plane, antenna_B_, ego, noise_, config_.jump_m);
@@ -199,8 +140,8 @@ std::optional<AlignmentFilter> Alignment::TryStart(const GnssFix& fix,
     start_plane_ = LocalPlane(LatticePoint(fix.position));
     start_.Reset();
   }
-  return start_.OnFix(InPlane(*start_plane_, fix, covariance_en), ego, antenna_B_,
-                      config_.min_course_speed_mps, config_.jump_m);
+  return start_.OnFix(InPlane(*start_plane_, fix, covariance_en, config_.yaw_floor_rad), ego,
+                      antenna_B_, config_.min_course_speed_mps, config_.jump_m);
 }
 
 bool Alignment::IsEstablished() const {
@@ -219,7 +160,7 @@ void Alignment::FollowCandidate(const GnssFix& fix, const Eigen::Matrix2d& covar
   if (ToSeconds(ego.stamp - candidate_->last) > kCandidateGap_s) return candidate_.reset();
   Candidate& candidate = *candidate_;
   candidate.filter.Predict(ego, noise_);
-  const FixInPlane in_plane = InPlane(candidate.plane, fix, covariance_en);
+  const FixInPlane in_plane = InPlane(candidate.plane, fix, covariance_en, config_.yaw_floor_rad);
   if (IsFar(candidate.plane, fix) ||
       !candidate.filter.Contradiction(in_plane, antenna_B_, ego, noise_, config_.jump_m).empty()) {
     // One stray fix among good ones does not end what those have in common.
@@ -245,7 +186,7 @@ void Alignment::Challenge(const GnssFix& fix, const Eigen::Matrix2d& covariance_
     const bool is_near =
         !IsFar(plane_, fix) && Flat(plane_, fix.position).norm() <= 2.0 * config_.reanchor_m;
     Candidate fresh{.plane = is_near ? plane_ : *start_plane_, .filter = {}, .last = ego.stamp};
-    const FixInPlane in_plane = InPlane(fresh.plane, fix, covariance_en);
+    const FixInPlane in_plane = InPlane(fresh.plane, fix, covariance_en, config_.yaw_floor_rad);
     if (started) {
       const double turn =
           ConvergenceAt(fresh.plane, fix.position) - ConvergenceAt(*start_plane_, fix.position);

@@ -106,13 +106,6 @@ class Alignment {
     bool is_guess = false;  // No fix told its direction.
   };
 
-  [[nodiscard]] static FixInPlane InPlane(const LocalPlane& plane, const GnssFix& fix,
-                                          const Eigen::Matrix2d& covariance_en,
-                                          double yaw_floor_rad);
-  [[nodiscard]] FixInPlane InPlane(const LocalPlane& plane, const GnssFix& fix,
-                                   const Eigen::Matrix2d& covariance_en) const {
-    return InPlane(plane, fix, covariance_en, config_.yaw_floor_rad);
-  }
   [[nodiscard]] bool IsFar(const LocalPlane& plane, const GnssFix& fix) const;
   [[nodiscard]] bool IsEstablished() const;
   [[nodiscard]] bool HasWon(const Candidate& candidate) const;

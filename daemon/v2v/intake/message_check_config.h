@@ -4,6 +4,7 @@
 #include "daemon/common/base/angle.h"
 #include "daemon/common/base/visit.h"
 #include "daemon/common/data/kinematic_limits.h"
+#include "daemon/common/data/motion_continuity.h"
 
 namespace v2vouch {
 
@@ -14,7 +15,8 @@ struct MessageCheckConfig {
   /// message_rate: more than this for a whole second is no accident.
   double accuse_rate_hz = 40.0;
   double own_motion_nis = 12.0;  ///< own_motion: mean NIS of ten messages (4 where consistent).
-  double jump_m = 8.0;  ///< position_jump: displacement that the claimed motion does not explain.
+  double jump_m =
+      kJump_m;  ///< position_jump: displacement that the claimed motion does not explain.
   /// position_jump: and never more than this times the time between.
   double jump_speed_mps = kMostRoadSpeed_mps;
   int accuse_jumps = 3;  ///< position_jump: of five messages.

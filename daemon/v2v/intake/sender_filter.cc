@@ -7,6 +7,7 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/data/kinematic_limits.h"
+#include "daemon/common/data/motion_continuity.h"
 #include "daemon/common/models/ctra.h"
 
 namespace v2vouch {
@@ -19,7 +20,6 @@ constexpr double kSpeedSigma_mps = 0.3;  // SAE J2945/1: 0.28 m/s.
 constexpr double kCourseSigma_rad = FromDegrees(2.0);
 constexpr double kCourseVelocitySigma_mps = 0.3;
 constexpr double kNoCourseSigma_rad = 1e3;
-constexpr double kMinJump_m = 10.0;
 constexpr double kLongestSilence_s = 2.0;
 constexpr double kConsistent4 = 13.28;  // Chi-square, 99 %, 4 and 3 degrees of freedom.
 constexpr double kConsistent3 = 11.34;
@@ -128,7 +128,7 @@ bool AdvanceSender(SenderTrack& track, const Bsm& bsm, const Claim& claim, bool 
   track.latest = claim;
   track.latest_nis.reset();
   bool is_broken =
-      dt > kLongestSilence_s || displacement > std::max(kMostRoadSpeed_mps * dt, kMinJump_m);
+      dt > kLongestSilence_s || displacement > std::max(kMostRoadSpeed_mps * dt, kRestart_m);
   if (is_reread && !is_broken) {
     StartMotion(track, claim);
   } else if (!is_broken) {

@@ -6,15 +6,13 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/data/kinematic_limits.h"
+#include "daemon/common/data/motion_continuity.h"
 #include "daemon/v2v/perception/claimed_position.h"
 #include "daemon/v2v/perception/evidence.h"
 
 namespace v2vouch {
 namespace {
 
-constexpr double kUnknownAccel_mps2 = 4.0;  // Acceleration that a message need not announce.
-constexpr double kOwnMotionFloor_m = 2.0;
-constexpr double kSpeedFloor_mps = 2.0;
 constexpr int kBreakMemory = 30;  // Messages for which a break of the own motion is held against.
 
 // Findings that a second device under the same id causes, whichever of the two lies.
@@ -65,8 +63,8 @@ bool ContinuesLastClaim(const SenderRecord& record, const Claim& claim,
       last.p_O + speed_mps * dt_s * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
   const double sigma_m = std::sqrt(0.5 * (last.noise.trace() + here.noise.trace()));
   return (here.p_O - expected).norm() <=
-             kOwnMotionFloor_m + 3.0 * sigma_m + 0.5 * kUnknownAccel_mps2 * dt_s * dt_s &&
-         std::abs(here.speed_mps - last.speed_mps) <= kSpeedFloor_mps + kMostRoadAccel_mps2 * dt_s;
+             kContinues_m + 3.0 * sigma_m + 0.5 * kUnannounced_mps2 * dt_s * dt_s &&
+         std::abs(here.speed_mps - last.speed_mps) <= kContinues_mps + kMostRoadAccel_mps2 * dt_s;
 }
 
 void JudgeMessage(SenderRecord& record, const PriorityVehicle* vehicle, const Claim& claim,

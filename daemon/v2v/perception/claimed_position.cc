@@ -11,8 +11,6 @@ namespace v2vouch {
 namespace {
 
 // A car's size, where none is claimed.
-constexpr double kUsualLength_m = 4.5;
-constexpr double kUsualWidth_m = 1.8;
 constexpr double kClaimSigma_m = 0.3;      // Blur of a claimed footprint.
 constexpr double kStanding_mps = 2.0;      // Stationary returns may be a slower vehicle.
 constexpr double kStandingReach_m = 2.0;   // Stationary returns so near may be the vehicle.

@@ -9,7 +9,11 @@
 
 namespace v2vouch {
 
-/// The vehicle that the sender says it is, at a position: of the claimed size, else 4.5 x 1.8 m.
+/// Size of a sender that claims none: a car's (ClassExtent).
+inline constexpr double kUsualLength_m = 4.5;
+inline constexpr double kUsualWidth_m = 1.8;
+
+/// The vehicle that the sender says it is, at a position: of the claimed size, else a car's.
 Occluder ClaimedFootprint(const SenderRecord& record, const Eigen::Vector2d& centre_O,
                           double yaw_rad);
 

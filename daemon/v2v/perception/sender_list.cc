@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "daemon/v2v/perception/claimed_position.h"
+
 namespace v2vouch {
 namespace {
 
@@ -39,8 +41,8 @@ PublishedTrack LineOf(const SenderTrack& sender, const V2vPerception& priority,
   P.topRows<2>() = (R_OL * P.topRows<2>()).eval();
   P.leftCols<2>() = (P.leftCols<2>() * R_OL.transpose()).eval();
   line.track.state_O.covariance.topLeftCorner<2, 2>() += now.alignment;
-  line.track.extent = {.length_m = claim.length_m.value_or(4.5),
-                       .width_m = claim.width_m.value_or(1.8),
+  line.track.extent = {.length_m = claim.length_m.value_or(kUsualLength_m),
+                       .width_m = claim.width_m.value_or(kUsualWidth_m),
                        .length_sigma_m = claim.length_m ? 0.1 : 1.0,
                        .width_sigma_m = claim.width_m ? 0.1 : 0.3};
   line.track.object_class = ObjectClass::kUnknown;

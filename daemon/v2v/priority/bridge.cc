@@ -48,7 +48,7 @@ void EmptyPlace::OnMiss(Timestamp stamp, double detection_probability, const Bri
   if (last_look_ && ToSeconds(stamp - *last_look_) < config.look_s) return;
   last_look_ = stamp;
   const double p_d = std::clamp(detection_probability, config.least_detection, 0.99);
-  log_ratio_ += std::log((1.0 - (1.0 - config.clear_doubt) * p_d) / (1.0 - config.false_detection));
+  log_ratio_ += std::log(AfterMiss(1.0, p_d, config.clear_doubt, config.false_detection));
 }
 
 }  // namespace v2vouch

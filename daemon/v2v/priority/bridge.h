@@ -6,6 +6,7 @@
 
 #include "daemon/common/base/time.h"
 #include "daemon/common/base/visit.h"
+#include "daemon/common/data/missed_detection.h"
 #include "daemon/common/data/track.h"
 #include "daemon/common/models/ctra.h"
 
@@ -31,8 +32,9 @@ struct BridgeConfig {
   int max_misfits = 3;             ///< Claims in a row that do not fit the bridge end it.
   double look_s = 0.3;             ///< empty_place: at most one observation per this time.
   double least_detection = 0.5;    ///< empty_place: floor of the detection probability.
-  double false_detection = 0.05;   ///< empty_place: chance of a hit where nothing is.
-  double clear_doubt = 0.15;      ///< empty_place: chance that what the map calls clear is covered.
+  double false_detection = kFalseDetection;  ///< empty_place: chance of a hit where nothing is.
+  double clear_doubt =
+      kClearDoubt;                ///< empty_place: chance that what the map calls clear is covered.
   double empty_log_ratio = -4.6;  ///< empty_place: the place is empty; withdraw.
   double contradiction_m = 5.0;   ///< The real vehicle seen this far from the bridge ends it.
 

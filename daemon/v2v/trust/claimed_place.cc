@@ -56,8 +56,7 @@ void ClaimedPlace::OnLook(Timestamp stamp, std::span<const Look, kPlaces> looks,
         after = std::pow(before, fade);
         break;
       case Seen::kEmpty:
-        after = before * (1.0 - (1.0 - config.clear_doubt) * looks[i].detection) /
-                (1.0 - config.false_detection);
+        after = AfterMiss(before, looks[i].detection, config.clear_doubt, config.false_detection);
         break;
     }
     likelihood_[i] = static_cast<float>(std::clamp(after, kLeast, 1.0));

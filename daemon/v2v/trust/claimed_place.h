@@ -10,15 +10,16 @@
 #include "daemon/common/base/time.h"
 #include "daemon/common/base/visit.h"
 #include "daemon/common/data/finding.h"
+#include "daemon/common/data/missed_detection.h"
 
 namespace v2vouch {
 
 /// empty_place for senders that no sensor vouches for: is there anything where they say they are?
 struct ClaimedPlaceConfig {
-  double look_s = 0.3;               ///< At most one observation per this time: not independent.
-  double bias_sigma_m = 1.5;         ///< GNSS bias that an honest sender may have, per axis.
-  double false_detection = 0.05;     ///< Chance that something is seen where nothing is.
-  double clear_doubt = 0.15;         ///< Chance that what is called clear is covered.
+  double look_s = 0.3;        ///< At most one observation per this time: not independent.
+  double bias_sigma_m = 1.5;  ///< GNSS bias that an honest sender may have, per axis.
+  double false_detection = kFalseDetection;  ///< Chance that something is seen where nothing is.
+  double clear_doubt = kClearDoubt;          ///< Chance that what is called clear is covered.
   double recovery_s = 5.0;           ///< Doubt fades with this time constant while out of view.
   double occupied_s = 0.6;           ///< ... with this one while something is there.
   double slack_m = 1.0;              ///< A track whose box comes so near explains a claim.

@@ -8,8 +8,8 @@
 
 #include "daemon/detector/darknet_cfg.h"
 #include "daemon/detector/network_detector.h"
-#include "tests/daemon/detector/data_folder.h"
 #include "tests/daemon/detector/onnx_file.h"
+#include "tests/support/data_folder.h"
 
 namespace v2vouch {
 namespace {

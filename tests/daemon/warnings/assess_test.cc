@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "daemon/warnings/merge_lists.h"
+#include "daemon/warnings/placement.h"
 #include "tests/daemon/warnings/scenes.h"
 
 namespace v2vouch::warnings {

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <string>
 
+#include "tests/support/data_folder.h"
+
 namespace v2vouch::sim {
 
 /// A folder for one test's files, gone afterwards.
@@ -31,9 +33,6 @@ class ScratchFolder {
 };
 
 /// Folder of reference data; tests that need it skip when `name` is not in it.
-inline std::filesystem::path ReferenceData(const std::string& name) {
-  const char* const folder = std::getenv("V2VOUCH_DATA");
-  return std::filesystem::path(folder != nullptr ? folder : "../shared/data") / name;
-}
+inline std::filesystem::path ReferenceData(const std::string& name) { return DataFolder() / name; }
 
 }  // namespace v2vouch::sim

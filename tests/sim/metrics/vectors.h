@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,14 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/data_folder.h"
+
 namespace v2vouch::evaluation {
 
 /// The reference vectors (gospa_vectors.json), or nothing where the data folder is absent.
 inline std::optional<nlohmann::json> LoadVectors() {
-  const char* folder = std::getenv("V2VOUCH_DATA");
-  const auto path =
-      std::filesystem::path(folder != nullptr ? folder : "../shared/data") / "gospa_vectors.json";
-  std::ifstream file(path);
+  std::ifstream file(DataFolder() / "gospa_vectors.json");
   if (!file) return std::nullopt;
   return nlohmann::json::parse(file);
 }

@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "tests/support/child_process.h"
+#include "tests/support/data_folder.h"
 
 namespace v2vouch::bench {
 namespace {
@@ -71,8 +71,7 @@ TEST(V2vouchBenchTracker, AFileGivesWhatItsTrafficGives) {
 
 // The published files, where they are at hand: identity only, the accuracy stands in docs.
 TEST(V2vouchBenchTracker, PublishedFilesHaveNoFalseTrackAndNoSwitch) {
-  const char* const data = std::getenv("V2VOUCH_DATA");
-  const std::string folder = std::string(data != nullptr ? data : "../shared/data") + "/bench/";
+  const std::string folder = (v2vouch::DataFolder() / "bench/").string();
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no reference data at " << folder;
   for (const char* n : {"10", "50", "100", "200"}) {
     const Finished run = Bench("'" + folder + "scen_rot_" + n + ".csv.gz' --json");

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -13,14 +12,13 @@
 
 #include "daemon/common/models/ctra.h"
 #include "daemon/common/models/measurement_model.h"
+#include "tests/support/data_folder.h"
 
 namespace v2vouch {
 namespace {
 
-std::string DataFile() {
-  const char* root = std::getenv("V2VOUCH_DATA");
-  return std::string(root != nullptr ? root : "../shared/data") +
-         "/radar/udacity_ekf/obj_pose-laser-radar-synthetic-input.txt";
+std::filesystem::path DataFile() {
+  return DataFolder() / "radar/udacity_ekf/obj_pose-laser-radar-synthetic-input.txt";
 }
 
 TEST(Udacity, RadarAndPositionModelsPassTheCoursesMark) {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tests/daemon/detector/data_folder.h"
 #include "tests/support/child_process.h"
+#include "tests/support/data_folder.h"
 
 namespace v2vouch {
 namespace {

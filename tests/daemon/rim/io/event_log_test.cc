@@ -14,6 +14,8 @@
 #include <lcm/lcm-cpp.hpp>
 #include <random>
 
+#include "tests/support/data_folder.h"
+
 namespace v2vouch {
 namespace {
 
@@ -89,10 +91,7 @@ std::vector<std::size_t> WriteTen(const std::string& path) {
   return starts;
 }
 
-fs::path DataFile(const std::string& name) {
-  const char* folder = std::getenv("V2VOUCH_DATA");
-  return fs::path(folder != nullptr ? folder : "../shared/data") / "lcmlogs" / name;
-}
+fs::path DataFile(const std::string& name) { return DataFolder() / "lcmlogs" / name; }
 
 TEST_F(EventLog, WhatIsWrittenIsReadBack) {
   WriteTen(Path("a.lcm"));

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "daemon/rim/wire/output_encoder.h"
 #include "daemon/rim/wire/sensor_conversion.h"
 #include "daemon/rim/wire/status_encoder.h"
+#include "tests/support/data_folder.h"
 #include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/calibration_t.hpp"
 #include "v2vouch/camera_image_t.hpp"
@@ -302,9 +302,7 @@ TEST(BsmFromWire, UnitsAndDirectionsAreTurned) {
 
 // BSMs of real on-board units with their published decoded values.
 TEST(BsmFromWire, PublishedMessagesHaveTheirPublishedValues) {
-  const char* folder = std::getenv("V2VOUCH_DATA");
-  std::ifstream file(std::string(folder != nullptr ? folder : "../shared/data") +
-                     "/j2735_bsm_vectors.json");
+  std::ifstream file(DataFolder() / "j2735_bsm_vectors.json");
   if (!file) GTEST_SKIP() << "SKIPPED: no j2735_bsm_vectors.json under V2VOUCH_DATA";
   const auto json = nlohmann::json::parse(file);
   const std::map<std::string, int> gears = {

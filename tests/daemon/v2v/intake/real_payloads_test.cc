@@ -9,14 +9,10 @@
 
 #include "daemon/v2v/intake/bsm_checks.h"
 #include "tests/daemon/v2v/intake/talking_car.h"
+#include "tests/support/data_folder.h"
 
 namespace v2vouch {
 namespace {
-
-std::string DataFolder() {
-  const char* folder = std::getenv("V2VOUCH_DATA");
-  return folder != nullptr ? folder : "../shared/data";
-}
 
 std::optional<double> Value(const nlohmann::json& si, const char* key, double factor = 1.0) {
   if (si.at(key).is_null()) return std::nullopt;
@@ -56,7 +52,7 @@ Bsm FromPayload(const nlohmann::json& vector) {
 }
 
 TEST(RealPayloads, EveryOneIsJudgedByItsContent) {
-  std::ifstream file(DataFolder() + "/j2735_bsm_vectors.json");
+  std::ifstream file(DataFolder() / "j2735_bsm_vectors.json");
   if (!file) {
     GTEST_SKIP() << "SKIPPED: no J2735 payloads in " << DataFolder();
   }

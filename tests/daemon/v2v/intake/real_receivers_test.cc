@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -12,19 +11,15 @@
 #include <vector>
 
 #include "tests/daemon/v2v/intake/talking_car.h"
+#include "tests/support/data_folder.h"
 
 namespace v2vouch {
 namespace {
 
-std::string DataFolder() {
-  const char* folder = std::getenv("V2VOUCH_DATA");
-  return folder != nullptr ? folder : "../shared/data";
-}
-
 // All numbers of a file with one line of headings; empty where there is no such file.
 std::vector<std::vector<double>> Read(const std::string& name) {
   std::vector<std::vector<double>> rows;
-  std::ifstream file(DataFolder() + "/" + name);
+  std::ifstream file(DataFolder() / name);
   std::string line;
   std::getline(file, line);
   while (std::getline(file, line)) {

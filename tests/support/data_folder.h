@@ -6,9 +6,10 @@
 
 namespace v2vouch {
 
-/// The reference data (V2VOUCH_DATA, else ../shared/data beside the checkout). May be absent.
+/// The reference data (V2VOUCH_DATA, else ../shared/data beside the checkout). May be absent: tests
+/// that need it say SKIPPED then.
 inline std::filesystem::path DataFolder() {
-  const char* folder = std::getenv("V2VOUCH_DATA");
+  const char* const folder = std::getenv("V2VOUCH_DATA");
   return folder != nullptr ? folder : "../shared/data";
 }
 

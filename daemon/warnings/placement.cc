@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/warnings/placement.h"
+
+#include <cmath>
+
+#include "daemon/common/base/angle.h"
+
+namespace v2vouch::warnings {
+namespace {
+
+constexpr double kSameDirection_rad = 0.786;  // 45 degrees
+constexpr double kOncoming_rad = 2.356;       // 135 degrees
+constexpr double kEye_m = 1.5;                // Driver's eye ahead of the rear axle, about.
+
+}  // namespace
+
+BodyTarget InBody(const Target& target, const Eigen::Vector2d& ego_p_O, double ego_yaw_O) {
+  BodyTarget out;
+  const double c = std::cos(ego_yaw_O);
+  const double s = std::sin(ego_yaw_O);
+  StateMatrix turn = StateMatrix::Identity();
+  turn(kX, kX) = c;
+  turn(kX, kY) = s;
+  turn(kY, kX) = -s;
+  turn(kY, kY) = c;
+  StateVector mean = target.state_O.mean;
+  mean.head<2>() -= ego_p_O;
+  out.mean = turn * mean;
+  out.mean[kYaw] = WrapAngle(mean[kYaw] - ego_yaw_O);
+  out.covariance = turn * target.state_O.covariance * turn.transpose();
+  out.size = {0.5 * target.extent.length_m, 0.5 * target.extent.width_m};
+  return out;
+}
+
+bool IsInEgo(const BodyTarget& target, const EgoBody& body) {
+  constexpr double kDeep_m = 0.3;
+  const HalfSize own{0.5 * body.length_m - kDeep_m, 0.5 * body.width_m - kDeep_m};
+  const StateVector& x = target.mean;
+  return Touch({{body.centre_x_m, 0.0}, {1.0, 0.0}}, own,
+               {x.head<2>(), {std::cos(x[kYaw]), std::sin(x[kYaw])}}, target.size);
+}
+
+Placement Classify(const EgoPlan& plan, const EgoBody& body, const BodyTarget& target,
+                   const WarningsConfig& config) {
+  Placement placement;
+  placement.place = PlaceOnPath(plan, target.mean.head<2>());
+  const double reverse = target.mean[kSpeed] < 0.0 ? kPi : 0.0;
+  const double turned = WrapAngle(target.mean[kYaw] - placement.place.yaw_rad);
+  placement.turned_rad = WrapAngle(turned + reverse);
+  placement.half_across_m = std::abs(target.size.length_m * std::sin(turned)) +
+                            std::abs(target.size.width_m * std::cos(turned));
+  const double along = placement.place.along_m;
+  const double in_path_m = 0.5 * body.width_m + placement.half_across_m + config.path_margin_m;
+  const bool in_path = std::abs(placement.place.left_m) <= in_path_m;
+  const bool stands = std::abs(target.mean[kSpeed]) < kTargetStands_mps;
+  const double off = std::abs(placement.turned_rad);
+  const double front_m = body.centre_x_m + 0.5 * body.length_m;
+  if (stands) {
+    if (along > front_m && in_path) placement.zone = Zone::kAhead;
+    return placement;
+  }
+  if (off <= kSameDirection_rad) {
+    if (target.mean[kX] < kEye_m) {
+      placement.zone = Zone::kBehind;
+    } else {
+      placement.zone = in_path ? Zone::kAhead : Zone::kAheadAside;
+    }
+  } else if (along < 0.0) {
+    placement.zone = Zone::kElsewhere;
+  } else if (off >= kOncoming_rad) {
+    placement.zone = Zone::kOncoming;
+  } else {
+    placement.zone = placement.turned_rad < 0.0 ? Zone::kFromLeft : Zone::kFromRight;
+  }
+  return placement;
+}
+
+}  // namespace v2vouch::warnings
