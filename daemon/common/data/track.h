@@ -46,6 +46,10 @@ struct LocalTrack {
   Timestamp start{};
   KinematicState state_O;
   Extent extent;
+  /// d(centre)/d(length) in O [m/m]: how the centre moves where the length turns out to be another
+  /// than estimated. Half a length along the vehicle where only its near face was seen, 0 where
+  /// both ends were.
+  Eigen::Vector2d centre_by_length_O = Eigen::Vector2d::Zero();
   bool is_point = false;  ///< Sensors report its centre: their models know no extent.
   ObjectClass object_class = ObjectClass::kUnknown;
   double existence = 0.0;     ///< Probability that a vehicle is there.

@@ -144,6 +144,12 @@ void TrackFilter::Show(const FilterSettings& settings, LocalTrack& track) const 
         kFloor_m * kFloor_m * Eigen::Matrix2d::Identity();
   }
   track.extent = state.extent();
+  const double length_variance = state.covariance(ExtendedState::kLength, ExtendedState::kLength);
+  track.centre_by_length_O =
+      length_variance > 0.0
+          ? Eigen::Vector2d(state.covariance.block<2, 1>(0, ExtendedState::kLength) /
+                            length_variance)
+          : Eigen::Vector2d(Eigen::Vector2d::Zero());
 }
 
 Eigen::Vector2d TrackFilter::position_O() const {

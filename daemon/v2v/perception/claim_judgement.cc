@@ -8,6 +8,7 @@
 #include "daemon/common/data/kinematic_limits.h"
 #include "daemon/common/data/motion_continuity.h"
 #include "daemon/v2v/perception/claimed_position.h"
+#include "daemon/v2v/perception/claimed_size.h"
 #include "daemon/v2v/perception/evidence.h"
 
 namespace v2vouch {
@@ -33,6 +34,17 @@ std::uint64_t TrackToCompareWith(const V2vView& view, const SenderRecord& record
   return may_be_it ? pair->track_id : 0;
 }
 
+// The LOCAL track's state at `at`, with the size that the sender tells.
+std::optional<KinematicState> SensedAt(const V2vView& view, const SenderRecord& record,
+                                       std::uint64_t local_id, Timestamp at) {
+  const TrackSnapshot* seen = view.tracks.Find(local_id);
+  const double dt_s = ToSeconds(at - view.tracks.stamp());
+  if (seen == nullptr || dt_s > TrackSnapshots::kMaxAge_s) return std::nullopt;
+  KinematicState state = GivenClaimedSize(seen->track, &record, view.config.trust).state_O;
+  if (dt_s > 0.0) PredictCtra(state, dt_s, view.config.filter.motion);
+  return state;
+}
+
 }  // namespace
 
 bool IsFromAnotherDevice(const V2vView& view, SenderRecord& record, const PriorityVehicle* vehicle,
@@ -40,7 +52,7 @@ bool IsFromAnotherDevice(const V2vView& view, SenderRecord& record, const Priori
   const TrustConfig& config = view.config.trust;
   if (vehicle == nullptr || !vehicle->is_supported || !record.trust.is_relied_on()) return false;
   const ResidualHistory& history = record.trust.history();
-  const auto sensed = view.tracks.StateAt(vehicle->local_id, here.stamp, view.config.filter.motion);
+  const auto sensed = SensedAt(view, record, vehicle->local_id, here.stamp);
   if (!sensed || !history.is_settled()) return false;
   const Eigen::Vector2d off_O = here.p_O - sensed->mean.head<2>() - history.mean_O();
   const double limit_m = config.odd_claim_m + 2.0 * std::sqrt(0.5 * here.noise.trace()) +
@@ -84,7 +96,7 @@ Comparison CompareWithSensors(const V2vView& view, SenderRecord& record,
   const TrustConfig& config = view.config.trust;
   Comparison comparison;
   const std::uint64_t local_id = TrackToCompareWith(view, record, vehicle);
-  const auto state = view.tracks.StateAt(local_id, here.stamp, view.config.filter.motion);
+  const auto state = SensedAt(view, record, local_id, here.stamp);
   if (!state) return comparison;
   comparison.is_made = true;
   // Residual history restarts when the associated track changes.
@@ -92,7 +104,8 @@ Comparison CompareWithSensors(const V2vView& view, SenderRecord& record,
   record.compared_id = local_id;
   const TrackSnapshot& seen = *view.tracks.Find(local_id);
   CoObservation observation = ForTrust(here, *state);
-  observation.extent_sigma_m = 0.5 * seen.track.extent.length_sigma_m;
+  observation.extent_sigma_m =
+      0.5 * GivenClaimedSize(seen.track, &record, config).extent.length_sigma_m;
   observation.is_partial = seen.is_partial && record.trust.is_relied_on();
   observation.is_doubtful = seen.is_doubtful;
   observation.is_plausible = IsSeenBySensors(view, record);
@@ -133,7 +146,7 @@ std::optional<PriorityVehicle> Validate(const V2vView& view, SenderRecord& recor
   }
   const TrackSnapshot* seen = view.tracks.Find(pair->track_id);
   if (seen == nullptr) return std::nullopt;
-  const LocalTrack& track = seen->track;
+  const LocalTrack track = GivenClaimedSize(seen->track, &record, config.trust);
   // A new track near a bridged vehicle is probably that vehicle.
   if (view.list.HasAnotherAt(track.state_O.mean.head<2>(), record.sender, false)) {
     return std::nullopt;
@@ -149,7 +162,7 @@ std::optional<PriorityVehicle> Validate(const V2vView& view, SenderRecord& recor
            .is_speed_consistent = evidence.is_speed_consistent(config.safe),
            .is_level_plausible = evidence.level() <= config.safe.max_level,
            .is_size_plausible =
-               IsSizePlausible(record.length_m, record.width_m, track.extent, config.trust),
+               IsSizePlausible(record.length_m, record.width_m, seen->track.extent, config.trust),
            .margin = std::min(view.pairs.Margin(*pair), MarginOverUnseen(record, *pair)),
            .min_margin = config.safe.min_margin,
            .is_assigned = pair->is_assigned,

@@ -73,7 +73,7 @@ void V2vPerception::ObservePairs(const SenderRecord& record, const ClaimInOdomet
     prior = BiasPrior{R_OL * record.prior_en->mean_en,
                       R_OL * record.prior_en->covariance * R_OL.transpose()};
   }
-  pairs_.Observe(here, IsOnAnotherLevel(record), tracks_, prior, config.safe, config.filter.motion);
+  pairs_.Observe(record, here, IsOnAnotherLevel(record), tracks_, prior, config);
 }
 
 // The vehicle that a sender without one goes on with: its own, which an intruder had taken over, or

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "daemon/v2v/perception/claimed_size.h"
 #include "daemon/v2v/perception/evidence.h"
 
 namespace v2vouch {
@@ -12,20 +13,21 @@ constexpr double kPairReach_m = 20.0;  // No claim, however poor, starts a pair 
 
 }  // namespace
 
-void SenderPairs::Observe(const ClaimInOdometry& claim, bool is_on_another_level,
-                          const TrackSnapshots& tracks, const std::optional<BiasPrior>& prior,
-                          const AssociationConfig& config, const MotionNoise& motion) {
+void SenderPairs::Observe(const SenderRecord& record, const ClaimInOdometry& claim,
+                          bool is_on_another_level, const TrackSnapshots& tracks,
+                          const std::optional<BiasPrior>& prior, const PriorityConfig& settings) {
+  const AssociationConfig& config = settings.safe;
   const double dt_s = ToSeconds(claim.stamp - tracks.stamp());
   if (tracks.tracks().empty() || dt_s > TrackSnapshots::kMaxAge_s) return;
   PairTable& pairs = is_on_another_level ? apart_ : on_level_;
   if (!is_on_another_level) BringToLevel(claim.sender, config);
   bool has_changed = false;
   for (const TrackSnapshot& snapshot : tracks.tracks()) {
-    KinematicState state = snapshot.track.state_O;
-    const double distance_m = (state.mean.head<2>() - claim.p_O).norm();
+    const double distance_m = (snapshot.track.state_O.mean.head<2>() - claim.p_O).norm();
     const bool is_known = pairs.Find(claim.sender, snapshot.track.id) != nullptr;
     if (distance_m > kPairReach_m && !is_known) continue;
-    if (dt_s > 0.0) PredictCtra(state, dt_s, motion);
+    KinematicState state = GivenClaimedSize(snapshot.track, &record, settings.trust).state_O;
+    if (dt_s > 0.0) PredictCtra(state, dt_s, settings.filter.motion);
     has_changed |= pairs.Observe(claim.sender, snapshot.track.id, Compare(claim, state), prior,
                                  config) != nullptr;
   }

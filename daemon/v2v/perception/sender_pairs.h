@@ -6,9 +6,10 @@
 
 #include "daemon/common/data/bias.h"
 #include "daemon/common/data/claim.h"
-#include "daemon/common/models/ctra.h"
 #include "daemon/v2v/association/pair_table.h"
+#include "daemon/v2v/perception/priority_config.h"
 #include "daemon/v2v/perception/track_snapshots.h"
+#include "daemon/v2v/senders/sender_record.h"
 
 namespace v2vouch {
 
@@ -20,9 +21,9 @@ class SenderPairs {
  public:
   /// Adds a claim to the evidence of each LOCAL track near by (20 m), and matches anew.
   /// @param prior GPS bias of the sender, for pairs that start now.
-  void Observe(const ClaimInOdometry& claim, bool is_on_another_level, const TrackSnapshots& tracks,
-               const std::optional<BiasPrior>& prior, const AssociationConfig& config,
-               const MotionNoise& motion);
+  void Observe(const SenderRecord& record, const ClaimInOdometry& claim, bool is_on_another_level,
+               const TrackSnapshots& tracks, const std::optional<BiasPrior>& prior,
+               const PriorityConfig& config);
 
   [[nodiscard]] const PairTable& on_level() const { return on_level_; }
   [[nodiscard]] bool HasTrack(std::uint64_t local_id) const;

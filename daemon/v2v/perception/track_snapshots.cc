@@ -60,14 +60,4 @@ const TrackSnapshot* TrackSnapshots::Find(std::uint64_t local_id) const {
   return at == tracks_.end() ? nullptr : &*at;
 }
 
-std::optional<KinematicState> TrackSnapshots::StateAt(std::uint64_t local_id, Timestamp at,
-                                                      const MotionNoise& motion) const {
-  const TrackSnapshot* snapshot = Find(local_id);
-  const double dt_s = ToSeconds(at - stamp_);
-  if (snapshot == nullptr || dt_s > kMaxAge_s) return std::nullopt;
-  KinematicState state = snapshot->track.state_O;
-  if (dt_s > 0.0) PredictCtra(state, dt_s, motion);
-  return state;
-}
-
 }  // namespace v2vouch

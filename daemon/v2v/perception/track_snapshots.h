@@ -52,9 +52,6 @@ class TrackSnapshots {
   [[nodiscard]] Timestamp stamp() const { return stamp_; }
   /// Null where there is no such track; `local_id` 0 is none.
   [[nodiscard]] const TrackSnapshot* Find(std::uint64_t local_id) const;
-  /// The track's state predicted to `at`; nullopt: no such track, or the frame is too old.
-  [[nodiscard]] std::optional<KinematicState> StateAt(std::uint64_t local_id, Timestamp at,
-                                                      const MotionNoise& motion) const;
 
  private:
   Timestamp stamp_{};

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "daemon/common/models/measurement_model.h"
+#include "daemon/v2v/perception/claimed_size.h"
 #include "daemon/v2v/perception/evidence.h"
 #include "daemon/v2v/perception/reappearance.h"
 
@@ -54,15 +55,16 @@ std::optional<Linearized> Linearize(const SensorMeasurement& measurement, const 
   return std::nullopt;
 }
 
-void TakeMeasurements(PriorityVehicle& vehicle, const TrackSnapshot& seen, const LocalFrame& frame,
-                      const VehicleConfig& sensors) {
-  const LocalTrack& track = seen.track;
+void TakeMeasurements(const V2vView& view, PriorityVehicle& vehicle, const TrackSnapshot& seen,
+                      const LocalFrame& frame) {
+  const LocalTrack track =
+      GivenClaimedSize(seen.track, view.senders.Find(vehicle.sender), view.config.trust);
   vehicle.extent = track.extent;
   const Extent extent = track.ModelExtent();
   for (const SensorUpdate& update : frame.updates) {
     if (update.track_id != track.id) continue;
     const StateVector x = vehicle.filter.kinematics().mean;
-    const auto linear = Linearize(update.measurement, x, extent, frame.ego, sensors);
+    const auto linear = Linearize(update.measurement, x, extent, frame.ego, view.vehicle);
     if (linear) vehicle.filter.Update(*linear);
   }
   vehicle.support = track.support;
@@ -149,7 +151,7 @@ VehicleStep StepVehicle(const V2vView& view, PriorityVehicle& vehicle, const Loc
   if (seen != nullptr && seen->is_hit &&
       (vehicle.is_supported ||
        (!seen->is_partial && IsWhereClaimed(view, seen->track, vehicle, frame.stamp)))) {
-    TakeMeasurements(vehicle, *seen, frame, view.vehicle);
+    TakeMeasurements(view, vehicle, *seen, frame);
   }
   if (vehicle.is_supported && ToSeconds(frame.stamp - vehicle.last_support) > config.support_s) {
     // Sensors and sender had come apart by more than any bias: there is nothing to carry on.

@@ -162,6 +162,32 @@ TEST(Crossing, ParkedCarsThatWePassStand) {
   }
 }
 
+// A row of them, close by at 50 km/h: each shows its tail first and its flank last, and the line of
+// sight turns by a right angle within a second.
+TEST(Crossing, AParkedRowThatWePassStands) {
+  int lists = 0, moving = 0;
+  for (const double aside_m : {-2.5, 3.0, -3.5}) {
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+      Scene scene(seed);
+      for (int k = 0; k < 6; ++k) scene.cars.push_back({.p_W = {60.0 + 7.0 * k, aside_m}});
+      scene.ego.speed_mps = 13.9;
+      Tracker tracker(TrackerConfig{}, scene.vehicle);
+      for (int step = 0; step < 140; ++step) {
+        scene.Advance(kStep_s);
+        scene.Radar(tracker);
+        if (step % 2 == 1) scene.Camera(tracker);
+        for (const LocalTrack& track : tracker.tracks()) {
+          if (!track.is_confirmed || track.radar_hits() < 10) continue;
+          ++lists;
+          if (track.state_O.velocity().norm() > 3.0) ++moving;
+        }
+      }
+    }
+  }
+  EXPECT_GT(lists, 1000);
+  EXPECT_EQ(moving, 0) << "of " << lists;
+}
+
 // Boxes that show a sliver of a parked car (or of the one behind it) do not push its track aside.
 TEST(Crossing, ABoxThatShowsASliverOfACarMovesItLittle) {
   double sum_m = 0.0;

@@ -2,6 +2,7 @@
 // Nothing of a vehicle lies before its near face, and nothing of it is a second vehicle.
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "daemon/local/tracking/vehicle_filter.h"
@@ -53,6 +54,46 @@ TEST(NearFace, ReturnsBeforeItScanAfterScanBringAVehicleToWhereTheyAre) {
     ASSERT_TRUE(filter.Update(look, FaceReturn(kFace_m + kDepth_m), false, {}));
   }
   EXPECT_NEAR(NearFace(filter), kFace_m, 0.5);
+}
+
+// Seen obliquely, so that the length moves the centre across the line of sight as well.
+TEST(NearFace, TheCovarianceStaysPositiveHoweverOftenItIsSetAnew) {
+  RadarConfig radar;
+  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
+  const EgoState ego;
+  const RadarLook look(ego, radar);
+  VehicleFilter filter;
+  BoxMeasurement box = LorryTooFar();
+  box.yaw_rad = 0.4;
+  filter.StartAt(box);
+  for (int scan = 0; scan < 200; ++scan) {
+    filter.Predict(0.05, {});
+    ASSERT_TRUE(filter.Update(look, FaceReturn(kFace_m - 4.0 * (scan / 40)), false, {}));
+    const Eigen::SelfAdjointEigenSolver<ExtendedState::Matrix> parts(filter.best().covariance);
+    ASSERT_GT(parts.eigenvalues().minCoeff(), 0.0) << scan;
+  }
+}
+
+// A follower whose centre was learnt too near as it turned: its length would have to explain the
+// rest, which a radar may not learn.
+TEST(NearFace, ReturnsBehindItScanAfterScanMoveACarThatDrives) {
+  RadarConfig radar;
+  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
+  const EgoState ego;
+  const RadarLook look(ego, radar);
+  PoseMeasurement pose;
+  pose.x_m = 30.0 + 0.5 * 4.6 - 1.6;
+  pose.y_m = 0.0;
+  pose.yaw_rad = kPi;
+  pose.speed_mps = 0.0;
+  pose.covariance = (Eigen::Matrix<double, 5, 1>() << 0.02, 0.02, 1e-3, 0.01, 1e-3).finished().asDiagonal();
+  VehicleFilter filter;
+  filter.StartAt(pose, {4.6, 1.85, 0.8, 0.2});
+  for (int scan = 0; scan < 60; ++scan) {
+    filter.Predict(0.05, {});
+    ASSERT_TRUE(filter.Update(look, FaceReturn(30.0 + kDepth_m), false, {}));
+  }
+  EXPECT_NEAR(NearFace(filter), 30.0, 0.5);
 }
 
 TEST(NearFace, ReturnsOutOfAnothersBoxMoveNoVehicle) {
