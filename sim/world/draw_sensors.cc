@@ -9,7 +9,7 @@
 namespace v2vouch::sim {
 namespace {
 
-constexpr std::uint64_t kSubject = 0x5E45'0F5E'2D4A'17B1;  // Nobody else's draws change with these.
+constexpr std::uint64_t kSubject = 0x5E45'0F5E'2D4A'17B1;  // Draws of its own.
 
 struct Family {
   const char* name;

@@ -193,7 +193,7 @@ void Alignment::Challenge(const GnssFix& fix, const Eigen::Matrix2d& covariance_
       fresh.filter = *started;
       fresh.filter.Rebase(Flat(fresh.plane, Unflat(*start_plane_, started->body_L())), turn);
     } else {
-      // Where the fixes bring no yaw, ours is as good a guess as any; motion will tell.
+      // Where the fixes bring no yaw, the present yaw is the guess; motion corrects it.
       const double sigma = std::sqrt(filter_.PoseCovariance()(2, 2));
       fresh.filter = AlignmentFilter(in_plane, filter_.yaw_rad(), sigma, antenna_B_, ego);
       fresh.is_guess = true;

@@ -30,7 +30,7 @@ struct Motion {
   double speed_mps = 0.0;
 };
 
-// Constant turn rate and acceleration. Braking ends at standstill, and a standing car does not
+// Constant turn rate and acceleration. Braking ends at standstill, and a stationary car does not
 // turn: a claim's deceleration is no promise to drive backwards.
 Motion Advance(Motion m, double accel_mps2, double yaw_rate_radps, double duration_s) {
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kStep_s)));

@@ -269,7 +269,7 @@ std::vector<RemoteSolution> SolveRemotes(const std::vector<RemotePair>& pairs, d
   for (RemoteSolution& s : solutions) {
     if (s.verdict == CalibrationVerdict::kEstimated) used.push_back(&s);
   }
-  // Whom the mean of the others, with the spread honest senders have, does not explain.
+  // Senders that the mean of the others, with the spread of honest senders, does not explain.
   const double own = rules.noise.sender_sigma_m * rules.noise.sender_sigma_m;
   std::vector<RemoteSolution*> leading;
   for (RemoteSolution* one : used) {
