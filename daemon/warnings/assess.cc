@@ -11,7 +11,7 @@
 namespace v2vouch::warnings {
 namespace {
 
-constexpr double kStands_mps = 0.5;
+constexpr double kStands_mps = 0.5;     // Of the ego: slower stands.
 constexpr double kTurning_radps = 0.1;  // With a car's steering: about to turn off.
 constexpr double kFastestTurn_mps = 30.0 / 3.6;
 constexpr double kLeftTurnOncoming_rad = 1.745;

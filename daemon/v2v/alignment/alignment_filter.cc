@@ -10,7 +10,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kStandstill_mps = 0.1;
+constexpr double kStandstill_mps = 0.1;  // Slower counts as at rest.
 // Correlation length of the odometry's random drift: wheel slip, road crown, tyre.
 constexpr double kDriftLength_m = 10.0;
 // Priors and random walks of the odometry's systematic errors: a production yaw rate sensor has up

@@ -10,8 +10,8 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kLongestAge_s = 3.0;
-constexpr double kStep_s = 0.05;
+constexpr double kLongestAge_s = 3.0;  // Older claims are carried no farther.
+constexpr double kStep_s = 0.05;       // Of the integration.
 // What a driver may do in the meantime, 1 sigma: along and across.
 constexpr double kAlong_mps2 = 1.0;
 constexpr double kAcross_mps2 = 0.6;

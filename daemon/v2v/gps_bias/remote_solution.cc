@@ -24,9 +24,9 @@ using remote::Blocks;
 using remote::kConstant;
 
 constexpr int kIterations = 20;
-constexpr double kSlopePrior_mps = 1.0;
-constexpr double kAtBoundSigmas = 2.0;
-constexpr double kTurnPrior_rad = 0.5;
+constexpr double kSlopePrior_mps = 1.0;  // Of a bias that drifts.
+constexpr double kAtBoundSigmas = 2.0;   // Added to a latency before it meets its limit.
+constexpr double kTurnPrior_rad = 0.5;   // Hardly any: the data decide.
 
 double Spread(std::vector<double> values) {
   std::ranges::sort(values);

@@ -8,7 +8,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr int kMaxDoublings = 16;
+constexpr int kMaxDoublings = 16;      // Of a penalty's time; more would overflow.
 constexpr double kMostCredit_s = 0.5;  // For one message, however long the silence before it.
 
 double Doubled(double base_s, int times, double most_s) {
