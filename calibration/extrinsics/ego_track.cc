@@ -23,7 +23,7 @@ EgoTrack::EgoTrack(const std::vector<EgoMotion>& motion) {
         {.stamp = m.stamp, .speed_mps = m.speed_mps, .yaw_rate_radps = m.yaw_rate_radps});
     speed_sigmas.push_back(m.speed_sigma_mps);
     rate_sigmas.push_back(m.yaw_rate_sigma_radps);
-    if (std::abs(m.speed_mps) < 0.5) continue;  // A standing odometer says exactly nothing.
+    if (std::abs(m.speed_mps) < 0.5) continue;  // At rest the odometer carries no information.
     speeds.push_back(m.speed_mps);
     rates.push_back(m.yaw_rate_radps);
   }

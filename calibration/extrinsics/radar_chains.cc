@@ -8,7 +8,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kMoving_mps = 1.5;  // Range rate beyond what a standing world gives.
+constexpr double kMoving_mps = 1.5;  // Range rate beyond that of a stationary world.
 constexpr double kJoin_m = 2.5;      // Reflections of one vehicle in one scan.
 constexpr double kJoin_mps = 1.5;
 constexpr double kGate_m = 1.2;  // From the prediction, plus three sigma across.

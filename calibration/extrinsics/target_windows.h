@@ -8,7 +8,7 @@
 
 namespace v2vouch {
 
-/// The ego's pose at one look, in the body frame at its window's middle.
+/// The ego's pose at one observation, in the body frame at its window's middle.
 struct LookPose {
   double dt_s = 0.0;
   double x_m = 0.0;
@@ -42,7 +42,7 @@ struct TargetWindow {
 /// Pairs of radar chains and boxes. A box belongs to the chain whose prediction, through the camera
 /// as it is known so far, is nearest and within `gate_rad`; both must be each other's nearest and
 /// the next nearest twice as far off. Boxes cut by the picture's border are left out. Windows that
-/// one radar alone saw tell nothing and are left out, too.
+/// one radar alone saw carry no information and are left out, too.
 std::vector<TargetWindow> PairTargets(const DriveLog& log, const EgoTrack& ego,
                                       const VehicleConfig& vehicle,
                                       const MountingParameters& parameters,

@@ -10,11 +10,11 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kSearchShare = 0.12;
-constexpr double kLeastSearch_px = 2.0;
-constexpr double kSideShare = 0.1;
-constexpr double kStandsOut = 2.0;
-constexpr int kLeastColumns = 4;
+constexpr double kSearchShare = 0.12;    // Of the box's height, up and down.
+constexpr double kLeastSearch_px = 2.0;  // The same at least.
+constexpr double kSideShare = 0.1;       // Of the width left out at each side.
+constexpr double kStandsOut = 2.0;       // Times the mean of all rows.
+constexpr int kLeastColumns = 4;         // Narrower boxes are left as they are.
 
 // Offset of a parabola's top through three neighbours, within half a row.
 double TopOf(double before, double at, double after) {

@@ -31,7 +31,7 @@ class Perception {
   /// frame counts as taken; a refusal of it then is among the diagnostics of that step.
   std::optional<Reason> Step(const Input& input, Outputs& outputs);
 
-  /// This car itself speaks under this id: a BSM under it is our own echo, whatever place it tells.
+  /// This car itself sends under this id: a BSM under it is our own echo, whatever it claims.
   void NoteOwnId(SenderId id, Timestamp at);
 
   /// Copies of the newest lists predicted to `at` (not before the newest frame), marked stale, all

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/common/base/notice.h"
+#include "daemon/common/base/reason.h"
 #include "daemon/common/base/time.h"
 #include "daemon/pipeline/timeline_config.h"
 

@@ -11,7 +11,7 @@
 namespace v2vouch::warnings {
 namespace {
 
-constexpr double kStands_mps = 0.5;
+constexpr double kStands_mps = 0.5;     // Of the ego: slower stands.
 constexpr double kTurning_radps = 0.1;  // With a car's steering: about to turn off.
 constexpr double kFastestTurn_mps = 30.0 / 3.6;
 constexpr double kLeftTurnOncoming_rad = 1.745;
@@ -159,7 +159,7 @@ class Assessor {
     const double sigma = std::sqrt(std::max(1e-6, body_target_.covariance(kAccel, kAccel)));
     const double p = Phi((-config_.hard_braking_mps2 - body_target_.mean[kAccel]) / sigma);
     if (target_->existence * p < config_.braking_probability) return;
-    // What is not seen is what a sender says of itself: to be told of, not to be braked for.
+    // An unseen vehicle's braking is its sender's claim: it may advise, not make the ego brake.
     const bool is_seen = base.own_sensor_age_s <= 0.5;
     if (!is_seen && !(base.own_sensor_age_s <= config_.urgent_unseen_s)) return;
     Warning warning = NewWarning(Kind::kEebl, Side::kAhead);
@@ -227,7 +227,7 @@ class Assessor {
     return figures;
   }
 
-  // The ego alone can avoid it: by standing before the place.
+  // Only the ego can avoid it: by stopping before the conflict.
   [[nodiscard]] Figures CrossingFigures(const Conflict& conflict) const {
     Figures figures = FiguresOf(conflict);
     const double speed = std::max(0.0, plan_.speed_mps);

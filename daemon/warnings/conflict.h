@@ -16,7 +16,7 @@ struct Conflict {
   double early_s = kNaN;           ///< 10 % quantile.
   double exact_median_s = kNaN;
   /// Over the draws within `hidden_sigmas` of the mean: the earliest touch; NaN = none. The
-  /// reachable set of a vehicle that nobody sees.
+  /// reachable set of a vehicle that no sensor sees.
   double reachable_s = kNaN;
   /// Mean motions: smallest |t_ego - t_other| over the pairs of instants at which the two bodies
   /// would stand in each other's place (0: they meet). NaN: the paths do not touch.

@@ -64,7 +64,7 @@ std::vector<Draw> MakeDraws() {
 }  // namespace
 
 double InverseNormal(double p) {
-  constexpr double kTail = 0.02425;
+  constexpr double kTail = 0.02425;  // Where Acklam's approximation changes its form.
   if (p > 1.0 - kTail) return -InverseNormal(1.0 - p);
   if (p < kTail) {
     const double q = std::sqrt(-2.0 * std::log(p));

@@ -9,10 +9,10 @@
 namespace v2vouch::warnings {
 namespace {
 
-constexpr double kAccelHolds_s = 1.0;
-constexpr double kYawRateFades_s = 3.0;
-constexpr double kLargestTurn_rad = 1.75;
-constexpr double kStartSpeed_mps = 5.0;  // An ego that starts goes no faster within the horizon.
+constexpr double kAccelHolds_s = 1.0;      // Then the speed holds; braking goes on to rest.
+constexpr double kYawRateFades_s = 3.0;    // Time constant: bends and turns end.
+constexpr double kLargestTurn_rad = 1.75;  // 100 degrees: a turn at a crossing ends.
+constexpr double kStartSpeed_mps = 5.0;    // An ego that starts goes no faster within the horizon.
 
 Eigen::Vector2d Turned(const Eigen::Vector2d& v, double by_rad) {
   // Short steps: a second-order rotation, brought back to length one.

@@ -86,7 +86,7 @@ std::int32_t Warner::Availability(const TargetList& newest, std::int32_t& degrad
   };
   if (is_blind(0.0, 40.0)) drop(Bit(Kind::kFcw) | Bit(Kind::kEebl) | Bit(Kind::kLta));
   if (is_blind(40.0, 20.0) || is_blind(-40.0, 20.0)) drop(Bit(Kind::kIma));
-  // Beside and behind "free" is said by nobody who does not look there.
+  // "Free" beside or behind needs sensors that cover these sectors.
   const auto is_watched = [&](double bearing_deg) {
     return WatchedAt(sectors, FromDegrees(bearing_deg), 5.0) == SectorState::kWatched;
   };

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "daemon/common/base/did_you_mean.h"
+#include "daemon/common/data/vehicle_section.h"
 #include "daemon/rim/config/yaml_reader.h"
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/wire/channels.h"
@@ -23,16 +24,6 @@ namespace v2vouch::sim {
 namespace {
 
 constexpr std::int64_t kMaxListDelay_us = 300'000;
-
-// The part of a vehicle file that is needed here.
-struct VehicleFile {
-  VehicleConfig vehicle;
-
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("vehicle", vehicle);
-  }
-};
 
 // Everything but the pictures, which stay in the file.
 struct Contents {
@@ -250,7 +241,7 @@ class Annotation {
 
   const AnnotationRequest& request_;
   AnnotationResult& result_;
-  VehicleFile file_;
+  VehicleSection file_;
   CameraConfig camera_;
   Contents contents_;
   std::set<std::string> other_cameras_;  // Channels.

@@ -13,10 +13,6 @@ constexpr double kStanding_mps = 0.5;
 
 std::size_t At(Sighting s) { return static_cast<std::size_t>(s); }
 
-double Share(std::int64_t part, std::int64_t whole) {
-  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : kNoValue;
-}
-
 double Rms(double squares, std::int64_t count) {
   return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : kNoValue;
 }

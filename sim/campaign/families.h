@@ -14,7 +14,7 @@ struct Family {
   std::vector<std::string> ids;
 };
 
-/// All families of the catalogue; ids of nobody's belong to a last one of their own.
+/// All families of the catalogue; ids that belong to none form a last one.
 const std::vector<Family>& Families();
 
 /// F1 per message that CaTCH reached against the attack most like `name` ("A6/random_20_70m"), with

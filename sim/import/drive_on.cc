@@ -18,7 +18,7 @@ constexpr double kBrake_mps2 = 6.0;
 constexpr double kHalfStrip_m = 2.0;
 constexpr double kStandingGap_m = 2.0;
 constexpr double kHeadway_s = 1.2;
-constexpr double kFarthest_m = 100.0;  // Nobody brakes for what is farther ahead.
+constexpr double kFarthest_m = 100.0;  // No driver brakes for what is farther ahead.
 
 // The row nearest to `time_s`, where there is one so near.
 const CentreSample* At(const Motion& motion, double time_s) {

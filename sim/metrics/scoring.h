@@ -19,6 +19,10 @@ namespace v2vouch::evaluation {
 /// A statistic over nothing: "none" in tables, null in JSON.
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
+inline double Share(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : kNoValue;
+}
+
 struct ScoringSettings {
   double cutoff_m = 10.0;
   double order = 2.0;

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "daemon/common/base/angle.h"
-
 namespace v2vouch::evaluation {
 
 const char* SightingName(Sighting sighting) {
@@ -26,11 +24,7 @@ Sighting TrueSighting(const TruthSample& sample, const PlanarMotion& motion,
   if (!sample.is_hidden) return Sighting::kVisible;
   const Eigen::Vector2d p_B = (X_WB.Inverse() * Point<World>{motion.x_m, motion.y_m}).vector();
   for (const SensorSpec& sensor : specs.sensors) {
-    const Eigen::Vector2d line = p_B - Eigen::Vector2d(sensor.x_m, sensor.y_m);
-    const double azimuth = WrapAngle(std::atan2(line.y(), line.x()) - sensor.yaw_rad);
-    if (line.norm() <= sensor.max_range_m && std::abs(azimuth) <= sensor.half_fov_rad) {
-      return Sighting::kHidden;
-    }
+    if (sensor.Covers(p_B)) return Sighting::kHidden;
   }
   return Sighting::kOutOfView;
 }

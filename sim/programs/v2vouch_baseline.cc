@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/common/data/vehicle.h"
+#include "daemon/common/data/vehicle_section.h"
 #include "daemon/rim/config/yaml_reader.h"
 #include "daemon/rim/config/yaml_writer.h"
 #include "daemon/rim/io/std_streams.h"
@@ -19,15 +20,6 @@ constexpr const char* kExamples =
     "  v2vouch-eval base.lcm --scorecard\n"
     "\nExit codes: 0 good; 1 a log cannot be read or written; 2 usage or configuration.";
 
-/// Of a vehicle file only this section is read; files with others are refused.
-struct VehicleFile {
-  v2vouch::VehicleConfig vehicle;
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("vehicle", vehicle);
-  }
-};
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -39,7 +31,7 @@ int main(int argc, char** argv) {
   app.add_option("--out", out, "LCM log to write: TRUTH and TRACKS_LOCAL")->required();
   app.add_option("--config", config, "Vehicle description (default: the shipped vehicle)");
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-baseline", argc, argv)) return *code;
-  VehicleFile file;
+  v2vouch::VehicleSection file;
   std::vector<std::string> problems;
   if (!config.empty() && !v2vouch::config::Load(config, file, problems)) {
     for (const std::string& problem : problems) {

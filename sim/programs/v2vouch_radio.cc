@@ -35,7 +35,7 @@ Examples:
       what is sent to UDP 6001 is car 1's, to 6002 car 2's; the ego car's gateway (v2vouch-obu) hears
       both on 5398, as far as the air lets it
   v2vouch-radio --config radio.yaml --seed 7 --json
-      ranges, bursts, delays and buildings from a file (docs/how-to/connect-an-on-board-unit.md);
+      ranges, bursts, delays and buildings from a file (docs/reference/on-board-units.md);
       figures on Ctrl-C
 
 Where the cars are comes from TRUTH over LCM (v2vouch-sim run --live). Ports are opened on 127.0.0.1.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/common/data/vehicle.h"
+#include "daemon/common/data/vehicle_section.h"
 #include "daemon/rim/config/yaml_reader.h"
 #include "daemon/rim/io/std_streams.h"
 #include "daemon/rim/program/command_line.h"
@@ -20,15 +21,6 @@ constexpr const char* kExamples =
     "\nPrints the files written. Exit codes: 0 good; 1 a log cannot be read or written; 2 usage "
     "or\n"
     "configuration. scripts/measure_ladder runs all rungs.";
-
-/// Of a vehicle file only this section is read; files with others are refused.
-struct VehicleFile {
-  v2vouch::VehicleConfig vehicle;
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("vehicle", vehicle);
-  }
-};
 
 }  // namespace
 
@@ -46,7 +38,7 @@ int main(int argc, char** argv) {
       ->required()
       ->check(v2vouch::OneOf({"existence", "association", "extent"}));
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-sift", argc, argv)) return *code;
-  VehicleFile file;
+  v2vouch::VehicleSection file;
   std::vector<std::string> problems;
   if (!config.empty() && !v2vouch::config::Load(config, file, problems)) {
     for (const std::string& problem : problems) {

@@ -13,10 +13,12 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "daemon/common/data/vehicle_section.h"
 #include "daemon/rim/config/yaml_reader.h"
 #include "daemon/rim/config/yaml_writer.h"
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/io/stop_signal.h"
+#include "daemon/rim/program/command_line.h"
 #include "sim/simulation/simulation.h"
 #include "sim/world/overlay.h"
 #include "sim/world/world.h"
@@ -123,17 +125,9 @@ std::unique_ptr<Sink> OpenSink(const RunOptions& options, std::string& error) {
   return nullptr;
 }
 
-struct VehicleFile {
-  VehicleConfig vehicle;
-  template <class Archive>
-  void Visit(Archive& a) {
-    a.Field("vehicle", vehicle);
-  }
-};
-
 bool WriteVehicle(const Scenario& scenario, const std::string& path, std::string& error) {
   std::ofstream file(path);
-  file << config::Print(VehicleFile{scenario.vehicle});
+  file << config::Print(VehicleSection{scenario.vehicle});
   file.close();
   if (!file) error = path + ": cannot be written";
   return static_cast<bool>(file);

@@ -47,10 +47,6 @@ Json NeesJson(const ConsistencyFigures& figures) {
       {"share_above_9.21", Rounded(figures.nees.ShareAbove(ConsistencyFigures::kOneInHundred))}};
 }
 
-double Share(std::int64_t part, std::int64_t whole) {
-  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : kNoValue;
-}
-
 Json BridgeJson(const BridgeFigures& bridge) {
   return {{"samples", bridge.samples},
           {"kept_share", Rounded(Share(bridge.kept, bridge.samples))},

@@ -82,7 +82,7 @@ class Reader {
     if (!message) return;
     ReceivedList list{event.received, FromMicros(message->utime), message->stale != 0, {}};
     for (const track_t& track : message->tracks) {
-      // Senders are claims, confirmed by nobody; the two other lists hold what counts as a vehicle.
+      // Senders are unconfirmed claims; the two other lists hold what counts as a vehicle.
       if (track.is_confirmed == 0 && kind != ListKind::kV2v) continue;
       if (!AllFinite({track.x_body_m, track.y_body_m, track.yaw_body_rad, track.speed_mps,
                       track.yaw_rate_radps, track.accel_mps2})) {

@@ -177,6 +177,12 @@ std::vector<Eigen::Vector2d> ReadOutline(const YAML::Node& building) {
 
 }  // namespace
 
+bool SensorSpec::Covers(const Eigen::Vector2d& p_B) const {
+  const Eigen::Vector2d line = p_B - Eigen::Vector2d(x_m, y_m);
+  const double azimuth = WrapAngle(std::atan2(line.y(), line.x()) - yaw_rad);
+  return line.norm() <= max_range_m && std::abs(azimuth) <= half_fov_rad;
+}
+
 int SceneSpecs::KindsThatCheck() const {
   const auto is_of_objects = [](const SensorSpec& s) { return s.kind == SensorKind::kObjects; };
   return !sensors.empty() && std::ranges::all_of(sensors, is_of_objects) ? 1 : 2;

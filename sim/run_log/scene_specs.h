@@ -25,6 +25,9 @@ struct SensorSpec {
   double range_rate_sigma_mps = 0.1;
   double depression_sigma_rad = 0.0037;  ///< Camera: bottom edge and body pitch together.
   double position_sigma_m = 0.3;         ///< Objects: of a box's centre, per axis.
+
+  /// Whether a point, in the ego's body frame, is within range and field of view.
+  [[nodiscard]] bool Covers(const Eigen::Vector2d& p_B) const;
 };
 
 /// Errors of the BSMs, as the scenario states them.

@@ -110,12 +110,7 @@ class SceneMaker {
     const std::vector<double> shares = UncoveredShares(silhouettes);
     for (std::size_t i = 0; i < scene.truths.size(); ++i) {
       SceneTruth& truth = scene.truths[i];
-      const Eigen::Vector2d line = truth.box_B.centre - from;
-      const double azimuth = WrapAngle(std::atan2(line.y(), line.x()) - sensor.yaw_rad);
-      if (truth.is_hidden || line.norm() > sensor.max_range_m ||
-          std::abs(azimuth) > sensor.half_fov_rad) {
-        continue;
-      }
+      if (truth.is_hidden || !sensor.Covers(truth.box_B.centre)) continue;
       truth.*sight = std::max(truth.*sight, shares[i]);
     }
   }

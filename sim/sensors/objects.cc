@@ -112,7 +112,7 @@ object_t ObjectSimulator::BoxOf(const ActorState& actor, const Sight& sight, con
   const double scale = spec.noise_scale;
   Vec2 p_S = frame.Turned(actor.motion.centre - frame.place);
   object_t box = Blank();
-  // Nobody knows the part that does not show: the centre is drawn towards the sensor's side.
+  // The hidden part is unknown: the centre is drawn towards the sensor's side.
   const double unseen = ideal ? 0.0 : kPartShare * (1.0 - sight.visible_fraction);
   const Vec2 true_p_S = p_S;
   p_S -= unseen * actor.actor->size.length_m * random.Uniform() * p_S.normalized();

@@ -34,7 +34,7 @@ class Simulation {
   /// @return false when the scenario is over; `events` then holds the last ones.
   bool Step(std::vector<SimEvent>& events);
 
-  /// What the user should know of this run: an attack that finds nobody to act on, for instance.
+  /// What the user should know of this run: an attack without a vehicle to act on, for instance.
   [[nodiscard]] const std::vector<std::string>& notes() const;
 
   /// Share of the scenario done, 0..1.

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "daemon/common/base/angle.h"
-
 namespace v2vouch::evaluation {
 
 std::vector<TrueBox> TrueBoxes(const Truth& truth, Timestamp t) {
@@ -52,9 +50,7 @@ bool JointView::Sees(Timestamp t, const Eigen::Vector2d& place_W, std::int64_t o
   for (const SensorSpec& sensor : log_.specs.sensors) {
     bool& by_kind = sees[static_cast<std::size_t>(sensor.kind)];
     if (by_kind) continue;
-    const Eigen::Vector2d line = p_B - Eigen::Vector2d(sensor.x_m, sensor.y_m);
-    const double azimuth = WrapAngle(std::atan2(line.y(), line.x()) - sensor.yaw_rad);
-    if (line.norm() > sensor.max_range_m || std::abs(azimuth) > sensor.half_fov_rad) continue;
+    if (!sensor.Covers(p_B)) continue;
     const Eigen::Vector2d from_W = (*X_WB_ * Point<Body>{sensor.x_m, sensor.y_m}).vector();
     if (!IsClear(from_W, place_W, own_vehicle)) continue;
     by_kind = true;

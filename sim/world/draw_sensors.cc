@@ -9,28 +9,7 @@
 namespace v2vouch::sim {
 namespace {
 
-constexpr std::uint64_t kSubject = 0x5E45'0F5E'2D4A'17B1;  // Nobody else's draws change with these.
-
-struct Family {
-  const char* name;
-  SensorMode mode;
-};
-constexpr Family kFamilies[] = {
-    {"bumper", SensorMode::kBumper},
-    {"corners", SensorMode::kCorners},
-    {"sparse", SensorMode::kSparse},
-    {"merged", SensorMode::kMerged},
-    {"inside", SensorMode::kInside},
-    {"few_face", SensorMode::kFewFace},
-    {"objects", SensorMode::kObjects},
-    {"multipath", SensorMode::kMultipath},
-    {"rain", SensorMode::kRain},
-    {"boxes", SensorMode::kBoxes},
-    {"one_radar", SensorMode::kOneRadar},
-    {"no_camera", SensorMode::kNoCamera},
-    {"narrow_camera", SensorMode::kNarrowCamera},
-    {"random", SensorMode::kRandom},
-};
+constexpr std::uint64_t kSubject = 0x5E45'0F5E'2D4A'17B1;  // Draws of its own.
 
 class Drawer {
  public:
@@ -261,15 +240,15 @@ class Drawer {
 
 std::vector<std::string> DrawnFamilies() {
   std::vector<std::string> names;
-  for (const Family& family : kFamilies) names.emplace_back(family.name);
+  for (const auto& [name, mode] : kSensorModeNames) {
+    if (IsDrawn(mode)) names.emplace_back(name);
+  }
   return names;
 }
 
 void DrawSensors(std::uint64_t seed, Scenario& scenario) {
   const SensorMode mode = scenario.sensors.mode;
-  const bool is_drawn =
-      std::ranges::any_of(kFamilies, [&](const Family& family) { return family.mode == mode; });
-  if (is_drawn) Drawer(seed, scenario).Draw(mode);
+  if (IsDrawn(mode)) Drawer(seed, scenario).Draw(mode);
   if (mode == SensorMode::kCustom && !scenario.family) scenario.family.emplace();
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <utility>
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/base/visit.h"
@@ -32,6 +34,21 @@ enum class SensorMode {
   kRandom,
 };
 
+/// In the order of the enum.
+inline constexpr std::initializer_list<std::pair<const char*, SensorMode>> kSensorModeNames = {
+    {"realistic", SensorMode::kRealistic}, {"ideal_points", SensorMode::kIdealPoints},
+    {"custom", SensorMode::kCustom},       {"bumper", SensorMode::kBumper},
+    {"corners", SensorMode::kCorners},     {"sparse", SensorMode::kSparse},
+    {"merged", SensorMode::kMerged},       {"inside", SensorMode::kInside},
+    {"few_face", SensorMode::kFewFace},    {"objects", SensorMode::kObjects},
+    {"multipath", SensorMode::kMultipath}, {"rain", SensorMode::kRain},
+    {"boxes", SensorMode::kBoxes},         {"one_radar", SensorMode::kOneRadar},
+    {"no_camera", SensorMode::kNoCamera},  {"narrow_camera", SensorMode::kNarrowCamera},
+    {"random", SensorMode::kRandom},
+};
+/// Whether a family and a sensor set-up are drawn for each run.
+constexpr bool IsDrawn(SensorMode mode) { return mode >= SensorMode::kBumper; }
+
 struct SensorsSpec {
   SensorMode mode = SensorMode::kRealistic;
   double noise_scale = 1.0;       ///< Of every sigma of radars, cameras and sources of objects.
@@ -53,24 +70,7 @@ struct SensorsSpec {
 
   template <class Archive>
   void Visit(Archive& a) {
-    a.Choice("mode", mode,
-             {{"realistic", SensorMode::kRealistic},
-              {"ideal_points", SensorMode::kIdealPoints},
-              {"custom", SensorMode::kCustom},
-              {"bumper", SensorMode::kBumper},
-              {"corners", SensorMode::kCorners},
-              {"sparse", SensorMode::kSparse},
-              {"merged", SensorMode::kMerged},
-              {"inside", SensorMode::kInside},
-              {"few_face", SensorMode::kFewFace},
-              {"objects", SensorMode::kObjects},
-              {"multipath", SensorMode::kMultipath},
-              {"rain", SensorMode::kRain},
-              {"boxes", SensorMode::kBoxes},
-              {"one_radar", SensorMode::kOneRadar},
-              {"no_camera", SensorMode::kNoCamera},
-              {"narrow_camera", SensorMode::kNarrowCamera},
-              {"random", SensorMode::kRandom}});
+    a.Choice("mode", mode, kSensorModeNames);
     a.Field("noise_scale", noise_scale, {.at_least = 0.0, .at_most = 20.0});
     a.Field("clutter_scale", clutter_scale, {.at_least = 0.0, .at_most = 100.0});
     a.Field("ghost_scale", ghost_scale, {.at_least = 0.0, .at_most = 10.0});

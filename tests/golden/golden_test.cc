@@ -19,6 +19,7 @@
 #include "tests/golden/late_and_odd.h"
 #include "tests/golden/list_text.h"
 #include "tests/support/data_folder.h"
+#include "tests/support/simulated_events.h"
 
 namespace v2vouch::testing {
 namespace {
@@ -40,15 +41,7 @@ Events Simulate(const std::string& name, const std::string& overlay = "") {
     if (sim::CheckReferences(scenario, problems)) world = sim::World::Make(scenario, 1, problems);
   }
   for (const std::string& problem : problems) ADD_FAILURE() << problem;
-  Events drive;
-  if (!world) return drive;
-  sim::Simulation simulation(*world, 1);
-  Events events;
-  for (bool more = true; more;) {
-    more = simulation.Step(events);
-    drive.insert(drive.end(), events.begin(), events.end());
-  }
-  return drive;
+  return world ? AllEvents(*world, 1) : Events{};
 }
 
 std::string Perceive(const Events& events, const std::string& vehicle, const std::string& name) {

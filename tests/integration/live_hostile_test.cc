@@ -23,6 +23,7 @@
 #include "daemon/rim/io/lcm_bus.h"
 #include "daemon/rim/io/lcm_url.h"
 #include "daemon/rim/wire/codec.h"
+#include "tests/integration/played_drive.h"
 #include "tests/integration/program.h"
 #include "tests/support/lcm_datagrams.h"
 #include "tests/support/synthetic_drive.h"
@@ -35,12 +36,15 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
+using testing::DigestOf;
+using testing::DriveMessages;
 using testing::Eventually;
 using testing::FragmentDatagram;
 using testing::FragmentHeader;
 using testing::Fragments;
 using testing::Octets;
 using testing::Pattern;
+using testing::Play;
 using testing::Program;
 using testing::ShortDatagram;
 using testing::WireMessage;
@@ -287,31 +291,6 @@ class LiveHostile : public ::testing::Test {
   }
   fs::path folder_;
 };
-
-std::vector<WireMessage> DriveMessages(double duration_s) {
-  testing::SyntheticDrive drive;
-  drive.duration_s = duration_s;
-  drive.cars.push_back({.x_m = 30.0, .y_m = 0.0, .speed_mps = 9.0, .sender = 0x11});
-  return testing::EncodeInputs(testing::MakeInputs(drive), VehicleConfig{});
-}
-
-void Play(LcmBus& bus, const std::vector<WireMessage>& messages) {
-  const auto start = std::chrono::steady_clock::now();
-  for (const WireMessage& message : messages) {
-    std::this_thread::sleep_until(start + (message.received - testing::DriveStart()));
-    bus.Publish(message.channel, message.bytes);
-  }
-}
-
-std::string DigestOf(const std::vector<WireMessage>& messages) {
-  Engine engine{DaemonConfig{}};
-  Outbox outbox;
-  for (const WireMessage& message : messages) {
-    outbox.Clear();
-    engine.OnMessage(message.channel, message.bytes, message.received, outbox);
-  }
-  return engine.digest_local();
-}
 
 // Peak of resident memory, MB.
 double PeakOf(const Program& daemon) {

@@ -22,6 +22,7 @@
 #include "daemon/rim/engine/trust_file.h"
 #include "daemon/rim/io/lcm_bus.h"
 #include "daemon/rim/wire/codec.h"
+#include "tests/integration/played_drive.h"
 #include "tests/integration/program.h"
 #include "tests/support/synthetic_drive.h"
 #include "tests/support/wire_drive.h"
@@ -33,9 +34,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
+using testing::DigestOf;
+using testing::DriveMessages;
 using testing::Eventually;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using testing::Play;
 using testing::Program;
 using testing::WireMessage;
 
@@ -137,32 +141,6 @@ class LiveProcess : public ::testing::Test {
   std::atomic<bool> is_over_ = false;
   std::thread listener_;
 };
-
-std::vector<WireMessage> DriveMessages(double duration_s) {
-  testing::SyntheticDrive drive;
-  drive.duration_s = duration_s;
-  drive.cars.push_back({.x_m = 30.0, .y_m = 0.0, .speed_mps = 9.0, .sender = 0x11});
-  return testing::EncodeInputs(testing::MakeInputs(drive), VehicleConfig{});
-}
-
-void Play(LcmBus& bus, const std::vector<WireMessage>& messages) {
-  const auto start = std::chrono::steady_clock::now();
-  for (const WireMessage& message : messages) {
-    std::this_thread::sleep_until(start + (message.received - testing::DriveStart()));
-    bus.Publish(message.channel, message.bytes);
-  }
-}
-
-// The lists that the same messages give without any process round them.
-std::string DigestOf(const std::vector<WireMessage>& messages) {
-  Engine engine{DaemonConfig{}};
-  Outbox outbox;
-  for (const WireMessage& message : messages) {
-    outbox.Clear();
-    engine.OnMessage(message.channel, message.bytes, message.received, outbox);
-  }
-  return engine.digest_local();
-}
 
 TEST_F(LiveProcess, PerceptionGoesOnWhereverStderrLeads) {
   const std::vector<WireMessage> messages = DriveMessages(2.5);

@@ -30,6 +30,7 @@
 #include "sim/world/scenario.h"
 #include "sim/world/world.h"
 #include "tests/integration/program.h"
+#include "tests/support/simulated_events.h"
 #include "tests/support/test_authority.h"
 #include "v2vouch/bsm_t.hpp"
 #include "v2vouch/obu_status_t.hpp"
@@ -105,13 +106,7 @@ std::vector<sim::SimEvent> Simulated(int lead_s) {
   scenario.bsm.latency_spread_s = 0.0;
   const auto world = sim::World::Make(scenario, 1, problems);
   EXPECT_TRUE(world) << (problems.empty() ? "" : problems.front());
-  std::vector<sim::SimEvent> all, some;
-  sim::Simulation simulation(*world, 1);
-  for (bool more = true; more;) {
-    more = simulation.Step(some);
-    all.insert(all.end(), some.begin(), some.end());
-  }
-  return all;
+  return testing::AllEvents(*world, 1);
 }
 
 // The units of all cars: one certificate and one port each.

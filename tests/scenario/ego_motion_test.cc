@@ -19,6 +19,7 @@
 #include "sim/simulation/simulation.h"
 #include "sim/world/scenario.h"
 #include "sim/world/world.h"
+#include "tests/support/simulated_events.h"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/track_list_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
@@ -36,15 +37,7 @@ Recording Drive(const std::string& name, const std::string& yaml) {
   std::unique_ptr<sim::World> world;
   if (sim::LoadScenario(path, scenario, problems)) world = sim::World::Make(scenario, 1, problems);
   for (const std::string& problem : problems) ADD_FAILURE() << problem;
-  Recording recording;
-  if (!world) return recording;
-  sim::Simulation simulation(*world, 1);
-  std::vector<sim::SimEvent> events;
-  for (bool more = true; more;) {
-    more = simulation.Step(events);
-    recording.insert(recording.end(), events.begin(), events.end());
-  }
-  return recording;
+  return world ? AllEvents(*world, 1) : Recording{};
 }
 
 Recording With(Recording recording, const std::function<void(ego_motion_t&)>& edit) {

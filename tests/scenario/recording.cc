@@ -14,6 +14,7 @@
 #include "sim/world/overlay.h"
 #include "sim/world/scenario.h"
 #include "sim/world/world.h"
+#include "tests/support/simulated_events.h"
 #include "v2vouch/bsm_t.hpp"
 #include "v2vouch/gnss_fix_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
@@ -91,7 +92,6 @@ Recording RecordWith(const std::string& name, std::uint64_t seed, const std::str
                      int vehicles) {
   sim::Scenario scenario;
   std::vector<std::string> problems;
-  Recording recording;
   std::unique_ptr<sim::World> world;
   if (sim::LoadScenario("sim/scenarios/" + name + ".yaml", scenario, problems)) {
     if (!overlay.empty()) {
@@ -101,14 +101,7 @@ Recording RecordWith(const std::string& name, std::uint64_t seed, const std::str
     world = sim::World::Make(scenario, seed, problems);
   }
   for (const std::string& problem : problems) ADD_FAILURE() << problem;
-  if (!world) return recording;
-  sim::Simulation simulation(*world, seed);
-  std::vector<sim::SimEvent> events;
-  for (bool more = true; more;) {
-    more = simulation.Step(events);
-    recording.insert(recording.end(), events.begin(), events.end());
-  }
-  return recording;
+  return world ? AllEvents(*world, seed) : Recording{};
 }
 
 Outcome Perceive(const Recording& recording, const std::string& config_path) {

@@ -36,25 +36,6 @@ struct Claim {
   bool has_course = true;         ///< False: heading unavailable; course_E says nothing.
   bool accuracy_is_poor = false;  ///< Reported so bad that its position is of no use.
 };
-Timestamp received{};     ///< Orders claims.
-Timestamp first_heard{};  ///< When this sender was heard for the first time.
-double age_s = 0.0;       ///< Reception minus claimed time of the content, >= 0.
-Eigen::Vector3d p_E = Eigen::Vector3d::Zero();  ///< Centre of the footprint, ECEF [m].
-/// Unit vector of the vehicle's x axis, ECEF.
-Eigen::Vector3d course_E = Eigen::Vector3d::UnitX();
-bool has_elevation = false;
-double height_m = 0.0;   ///< Above the ellipsoid; 0 where unknown.
-double speed_mps = 0.0;  ///< Along course_E; negative in reverse.
-bool has_course = true;  ///< False: heading unavailable; course_E says nothing.
-double accel_mps2 = 0.0;
-double yaw_rate_radps = 0.0;    ///< Left positive.
-double position_sigma_m = 2.0;  ///< Per axis, reported accuracy clamped to what we believe.
-bool accuracy_is_poor = false;  ///< Reported so bad that its place is of no use.
-std::optional<double> length_m;
-std::optional<double> width_m;
-TrackEvents events = 0;
-std::optional<Finding> finding{};  ///< Gravest that the message stream alone has against it.
-};
 
 /// A claim in the odometry frame, carried forward to a given time.
 struct ClaimInOdometry {

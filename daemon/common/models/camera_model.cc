@@ -9,8 +9,8 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kMinDepth_m = 0.3;
-constexpr double kPoint_m = 1e-3;
+constexpr double kMinDepth_m = 0.3;  // Nearer to the image plane nothing is projected.
+constexpr double kPoint_m = 1e-3;    // A smaller vehicle is a point.
 // Bodies are rounded: a silhouette ends this far (1 sigma) from the corner of the box.
 constexpr double kCornerSigma_m = 0.08;
 // The box's bottom touches tyre or bumper, not the footprint's edge.

@@ -10,7 +10,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kMaxStep_s = 0.1;
+constexpr double kMaxStep_s = 0.1;  // Of one Euler step of the covariance.
 // Sub-steps end here: what follows is no motion any more but a guess of one, see Forget.
 constexpr double kMostSteps = 100;
 constexpr double kLongest_s = kMostSteps * kMaxStep_s;

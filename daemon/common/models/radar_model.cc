@@ -11,7 +11,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kMinRange_m = 0.1;
+constexpr double kMinRange_m = 0.1;  // Nearer, azimuth has no meaning.
 // Extents below this are a point.
 constexpr double kPoint_m = 1e-3;
 // Share of the reflections' spread that more reflections do not remove: scatterers sit where the

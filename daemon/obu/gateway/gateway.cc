@@ -13,11 +13,11 @@
 namespace v2vouch::obu {
 namespace {
 
-constexpr std::int64_t kSenderMemory_us = 5000000;
-constexpr std::size_t kMostSenders = 16384;
-constexpr std::size_t kClockSamples = 101;
-constexpr std::size_t kFewestClockSamples = 10;
-constexpr std::int64_t kLogPause_us = 10000000;
+constexpr std::int64_t kSenderMemory_us = 5000000;  // Silent for longer: not counted.
+constexpr std::size_t kMostSenders = 16384;         // Counted; a flood of ids takes no more.
+constexpr std::size_t kClockSamples = 101;          // Of the median.
+constexpr std::size_t kFewestClockSamples = 10;     // Fewer make no verdict.
+constexpr std::int64_t kLogPause_us = 10000000;     // Between two lines of a kind.
 
 // Equal for copies of one message, whichever way they came. The signature belongs to it: who
 // repeats a message without or with another must not displace the true one.

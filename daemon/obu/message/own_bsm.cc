@@ -13,7 +13,7 @@
 namespace v2vouch::obu {
 namespace {
 
-constexpr double kCourseSpeed_mps = 3.0;  // Slower than this, GNSS velocity tells no course.
+constexpr double kCourseSpeed_mps = 3.0;  // Slower than this, GNSS velocity has no usable course.
 
 // `value` in units of `unit`; what is no number stays unavailable, what is too large saturates.
 std::int32_t Raw(double value, double unit, std::int32_t unavailable) {

@@ -29,8 +29,8 @@ struct OwnSenderConfig {
   double rate_hz = 10.0;
 };
 
-/// Says when the own car speaks, and what. Silent while one of its inputs is stale, so that nobody
-/// is told of a place where the car is no more. Reads no clock: time is the caller's.
+/// Says when the own car speaks, and what. Silent while one of its inputs is stale, so that no
+/// receiver is given a position that the car has left. Reads no clock: time is the caller's.
 class OwnSender {
  public:
   /// @param seed of the TemporaryIDs and first counts.

@@ -15,7 +15,7 @@ enum class FaultKind : std::uint8_t {
   kTooLong,         ///< Above the cap for one datagram.
   kTrailingBytes,   ///< Goes on after the layout ended.
   kBadLength,       ///< A length that the layout does not allow.
-  kFragmented,      ///< A UPER length in pieces: nobody needs one for a message of this size.
+  kFragmented,      ///< A UPER length in pieces: no message of this size needs one.
   kOutOfRange,      ///< A value the standard does not define.
   kUnknownFraming,  ///< The first bytes belong to no layer known here.
   kUnsupported,     ///< Known, and not read here: its name is in `where`.

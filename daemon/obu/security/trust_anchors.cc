@@ -82,7 +82,7 @@ TrustAnchors::Answer TrustAnchors::Prove(const Certificate& certificate, std::ui
   Answer answer{ChainState::kBroken, {}};
   if (!certificate.is_key_p256) return answer;
   if (certificate.is_implicit) {
-    // Has no signature of its own: whoever can sign under the key was given it by the issuer.
+    // Has no signature of its own: the issuer gave the key to the holder who signs with it.
     answer.key = ReconstructedKey(hash, certificate.key, *above.key);
   } else {
     const auto issuer_key = PublicKey::FromPoint(*above.key);

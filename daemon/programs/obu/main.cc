@@ -32,7 +32,7 @@ Examples:
 
 Captures are pcap or pcapng files of Ethernet, 802.11, radiotap, Linux "any" or raw IP. A .hex file
 holds one datagram a line; blanks round it, empty lines and comments (#) are passed over. Any other
-file is one raw datagram. docs/how-to/connect-an-on-board-unit.md lists the framings.
+file is one raw datagram. docs/reference/on-board-units.md lists the framings.
 
 Exit codes: 0 good, refused messages included; 1 the file cannot be read to its end, or holds no
 packet, or a socket cannot be opened; 2 usage or configuration (certificates that cannot be used

@@ -30,7 +30,7 @@ Under systemd (Type=notify) it tells when it runs, and feeds the watchdog while 
 
 Exit codes: 0 ended on request; 1 something failed while running; 2 usage or configuration.)";
 
-// The camera network, where a camera wants one: pictures without a network help nobody.
+// The camera network, where a camera sends pictures: without it pictures are of no use.
 std::unique_ptr<v2vouch::ObjectDetector> LoadDetector(const v2vouch::DaemonConfig& config,
                                                       std::vector<std::string>& problems) {
   for (const v2vouch::CameraConfig& camera : config.perception.vehicle.cameras) {

@@ -78,7 +78,7 @@ class YamlReader {
   /// A key that belongs to another program's settings in the same file.
   void Ignore(const char* key) { Find(key); }
 
-  /// To be called after Visit: reports keys that nobody asked for, with the nearest known one.
+  /// To be called after Visit: reports unknown keys, each with the nearest known one.
   void Finish();
 
  private:

@@ -29,7 +29,7 @@ std::optional<NoticeSubject> SubjectOf(const wire::InputChannel& channel) {
       return NoticeSubject{NoticeSubject::Kind::kEgoMotion, 0};
     case wire::InputKind::kGnss:
       return NoticeSubject{NoticeSubject::Kind::kGnss, 0};
-    case wire::InputKind::kBsm:  // Nobody has to send any.
+    case wire::InputKind::kBsm:  // BSMs are optional.
     case wire::InputKind::kOwnBsm:
       break;
   }

@@ -175,7 +175,7 @@ LoadedTrust LoadTrust(const std::string& path, const std::string& vehicle, Times
   text.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
   std::string problem;
   const auto file = ParseTrust(text, problem);
-  // A file that a full disk left empty is nobody's.
+  // A file that a full disk left empty has no owner.
   loaded.is_foreign = !text.empty() && !text.starts_with(kMagic);
   if (!file) return refuse(problem);
   if (file->vehicle != vehicle) {

@@ -189,7 +189,7 @@ void Assembler::Account(Half& half) {
   half.reserved = reserved;
 }
 
-// A message that nobody wanted is no loss.
+// A message without a subscriber does not count as lost.
 void Assembler::GiveUp(Halves::iterator at, PacketFault fault) {
   if (!at->second.is_unwanted) ++counts_[static_cast<std::size_t>(fault)];
   Erase(at);

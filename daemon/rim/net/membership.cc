@@ -18,7 +18,7 @@ namespace v2vouch::net {
 namespace {
 
 // Index of the interface that the routes name for the group; 0 where there is none. The kernel is
-// asked (RTM_GETROUTE): an own address would not tell, since on `lo` multicast has none.
+// asked (RTM_GETROUTE): an own address would not do, since multicast on `lo` has none.
 int DeviceTowards(std::uint32_t group) {
   struct {
     nlmsghdr header{};

@@ -7,7 +7,7 @@ namespace v2vouch::net {
 
 /// Keeps a socket a member of an IPv4 multicast group, on the interface that the routes name for
 /// it. Linux forgets a membership when the interface goes or loses its last address, and never
-/// moves it to another interface; the socket is not told and hears nothing for ever.
+/// moves it to another interface; the socket is not notified and receives nothing any more.
 class Membership {
  public:
   /// @param group in network byte order.

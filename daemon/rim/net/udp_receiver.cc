@@ -119,7 +119,7 @@ std::unique_ptr<UdpReceiver> UdpReceiver::Open(const UdpOptions& options, std::s
       socket(own.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return failed(errno);
   std::unique_ptr<UdpReceiver> receiver(new UdpReceiver(descriptor, options));
-  // Several may listen to a group; a port of one's own is nobody else's.
+  // Several programs may listen to a group; a unicast port belongs to one program.
   if (own.is_multicast) {
     Set(descriptor, SOL_SOCKET, SO_REUSEADDR, 1);
     Set(descriptor, IPPROTO_IP, IP_MULTICAST_ALL, 0);

@@ -63,7 +63,7 @@ SignatureState SignatureOf(int raw, FieldJudge& judge) {
   return SignatureState::kUnknown;
 }
 
-// What Part I tells beside the motion. J2735 calls more than 0.4 g hard braking
+// What Part I says beside the motion. J2735 calls more than 0.4 g hard braking
 // (VehicleEventFlags); wheelBrakes has a bit for each wheel, and the highest of five for
 // "unavailable".
 TrackEvents EventsOf(int wheel_brakes, const std::optional<double>& accel_long_mps2) {

@@ -135,7 +135,7 @@ Result<GnssFix> FromWire(const gnss_fix_t& message, const VehicleConfig& vehicle
   const auto heading = judge.Optional(
       message.heading_rad, -kTurn_rad, kTurn_rad,
       LooksLikeDegrees(message.heading_rad) ? "heading_rad looks like degrees" : "heading_rad");
-  // Due north to the last bit and without accuracy: nobody filled the field in.
+  // Exactly due north and without accuracy: the field was not filled in.
   const bool is_unset = message.heading_rad == 0.0 && !heading_sigma;
   if (heading && !is_unset) {
     fix.yaw_rad = WrapAngle(kPi / 2.0 - *heading - vehicle.heading_bias_rad);

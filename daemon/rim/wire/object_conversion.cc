@@ -13,13 +13,13 @@ namespace {
 constexpr double kMaxLength_m = 40.0;
 constexpr double kMaxWidth_m = 10.0;
 constexpr double kMaxObjectSpeed_mps = 150.0;
-// Variances: a position that is off by more than 100 m tells nothing, and none is known to a
-// tenth of a millimetre. A correlation nearer to one than this leaves no ellipse.
+// Variances: a position that is off by more than 100 m carries no information, and no position is
+// known to a tenth of a millimetre. A correlation nearer to one than this leaves no ellipse.
 constexpr double kMaxObjectVariance = 1e4;
 constexpr double kLeastVariance = 1e-8;
 constexpr double kMostCorrelation = 0.999;
 
-// Axis and size. A size is told as a whole or not at all.
+// Axis and size. Length and width are used only where both are given.
 void PutShape(const object_t& from, FieldJudge& judge, ObjectBox& object) {
   const auto yaw = judge.Optional(
       from.yaw_rad, -kTurn_rad, kTurn_rad,

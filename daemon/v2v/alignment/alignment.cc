@@ -14,9 +14,9 @@ namespace v2vouch {
 namespace {
 
 constexpr double kLattice_rad = FromDegrees(0.01);
-constexpr double kAgree_s = 1.0;
-constexpr double kNewPlace_s = 10.0;
-constexpr double kVouched_s = 5.0;
+constexpr double kAgree_s = 1.0;      // Fixes agree for so long: the doubt ends.
+constexpr double kNewPlace_s = 10.0;  // Of driving until a rival place is taken.
+constexpr double kVouched_s = 5.0;    // So long an agreeing claim rules out a move.
 // Fixes of the new place must follow one another; after a longer silence it starts again.
 constexpr double kCandidateGap_s = 2.0;
 // How long fixes must have agreed with an estimate before it is more than the first of several
@@ -51,7 +51,7 @@ void Alignment::Vouch(Timestamp at) { vouched_ = vouched_ ? std::max(*vouched_, 
 // The plane is good near its origin only: half round the earth it folds back on itself.
 bool Alignment::IsFar(const LocalPlane& plane, const GnssFix& fix) const {
   const Eigen::Vector3d from_E = ToEcef(fix.position).p_E - ToEcef(plane.origin()).p_E;
-  constexpr double kHeights_m = 20000.0;
+  constexpr double kHeights_m = 20000.0;  // Two heights may differ so.
   return from_E.norm() > 2.0 * config_.reanchor_m + kHeights_m;
 }
 
@@ -193,7 +193,7 @@ void Alignment::Challenge(const GnssFix& fix, const Eigen::Matrix2d& covariance_
       fresh.filter = *started;
       fresh.filter.Rebase(Flat(fresh.plane, Unflat(*start_plane_, started->body_L())), turn);
     } else {
-      // Where the fixes bring no yaw, ours is as good a guess as any; motion will tell.
+      // Where the fixes bring no yaw, the present yaw is the guess; motion corrects it.
       const double sigma = std::sqrt(filter_.PoseCovariance()(2, 2));
       fresh.filter = AlignmentFilter(in_plane, filter_.yaw_rad(), sigma, antenna_B_, ego);
       fresh.is_guess = true;

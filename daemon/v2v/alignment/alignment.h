@@ -78,7 +78,7 @@ class Alignment {
   [[nodiscard]] const LocalPlane& plane() const { return plane_; }
   [[nodiscard]] Pose<LocalEnu, Odometry> X_LO() const;
   /// Of [x, y, yaw] of X_LO, consider terms included. Far from O's origin x and y hang on yaw;
-  /// CovarianceAt tells what a place is worth.
+  /// CovarianceAt is the uncertainty of a position.
   [[nodiscard]] const Eigen::Matrix3d& covariance() const { return covariance_; }
   /// Of the place in L of a point fixed in O [m^2], consider terms included.
   [[nodiscard]] Eigen::Matrix2d CovarianceAt(const Eigen::Vector2d& p_O) const;
@@ -103,7 +103,7 @@ class Alignment {
     double support_s = 0.0;  // Of fixes that agreed, less of those that did not.
     double way_m = 0.0;
     int fixes = 1;
-    bool is_guess = false;  // No fix told its direction.
+    bool is_guess = false;  // No fix gave its direction.
   };
 
   [[nodiscard]] bool IsFar(const LocalPlane& plane, const GnssFix& fix) const;

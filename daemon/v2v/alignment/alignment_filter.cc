@@ -10,13 +10,13 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kStandstill_mps = 0.1;
+constexpr double kStandstill_mps = 0.1;  // Slower counts as at rest.
 // Correlation length of the odometry's random drift: wheel slip, road crown, tyre.
 constexpr double kDriftLength_m = 10.0;
 // Priors and random walks of the odometry's systematic errors: a production yaw rate sensor has up
 // to 0.1 deg/s of offset, a wheel speed signal up to 1 % of scale (0.8 % measured on a real drive).
 constexpr double kYawDriftSigma_radps = 0.002;
-constexpr double kLearntSigma_radps = 5e-4;  // Of a gyro offset learnt in a second of standing.
+constexpr double kLearntSigma_radps = 5e-4;  // Of a gyro offset learnt in one second at rest.
 constexpr double kYawDriftWalk = 2e-5;       // [rad/s/sqrt(s)]
 constexpr double kScaleSigma = 0.01;
 constexpr double kScaleWalk = 1e-4;  // [1/sqrt(s)]
@@ -118,7 +118,7 @@ void AlignmentFilter::Predict(const EgoState& ego, const AlignmentNoise& noise) 
     F(kYaw, kYawDrift) = dt;
   }
   mean_.head<2>() += (1.0 + mean_(kScale)) * moved_L;
-  // A standing car does not turn: what O turns then is its drift, and L is turned back by it.
+  // A stationary car does not turn: a turn of O is then drift, and L is turned back by it.
   mean_(kYaw) = WrapAngle(mean_(kYaw) + (is_standing ? -turned_O : drift));
   covariance_ = F * covariance_ * F.transpose();
   if (!is_standing) {
@@ -195,7 +195,7 @@ void AlignmentFilter::Update(const FixInPlane& fix, const Eigen::Vector2d& anten
   const Eigen::Matrix2d R = fix.covariance * ColourFactor(kPositionCorrelation_s, interval);
   const Eigen::Matrix2d S = H * covariance_ * H.transpose() + R;
   Eigen::Matrix<double, kSize, 2> K = covariance_ * H.transpose() * S.inverse();
-  // Wandering fixes of a standing car say nothing about directions or the odometry: those states
+  // Wandering fixes of a stationary car carry no direction and no odometry error: those states
   // are considered, not estimated (Schmidt), which the Joseph form below accounts for exactly.
   if (is_standing) K.bottomRows<3>().setZero();
   const Matrix I_KH = Matrix::Identity() - K * H;

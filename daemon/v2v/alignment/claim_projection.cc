@@ -10,8 +10,8 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kLongestAge_s = 3.0;
-constexpr double kStep_s = 0.05;
+constexpr double kLongestAge_s = 3.0;  // Older claims are carried no farther.
+constexpr double kStep_s = 0.05;       // Of the integration.
 // What a driver may do in the meantime, 1 sigma: along and across.
 constexpr double kAlong_mps2 = 1.0;
 constexpr double kAcross_mps2 = 0.6;
@@ -30,7 +30,7 @@ struct Motion {
   double speed_mps = 0.0;
 };
 
-// Constant turn rate and acceleration. Braking ends at standstill, and a standing car does not
+// Constant turn rate and acceleration. Braking ends at standstill, and a stationary car does not
 // turn: a claim's deceleration is no promise to drive backwards.
 Motion Advance(Motion m, double accel_mps2, double yaw_rate_radps, double duration_s) {
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kStep_s)));

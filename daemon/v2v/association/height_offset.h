@@ -11,7 +11,7 @@ namespace v2vouch {
 /// One sender's height beside the ego's.
 struct HeightWitness {
   SenderId sender = 0;
-  double difference_m = 0.0;  ///< Its height less the ego's, as told.
+  double difference_m = 0.0;  ///< Its height less the ego's, as reported.
   double slack_m = 4.0;       ///< By which it may differ on one road, with distance and grade.
   /// A LOCAL track has its place and speed while it drives, well enough to be validated but for the
   /// height, over this way; 0: none has.
@@ -36,7 +36,7 @@ struct HeightWitness {
 /// evidence speaks against it. Copyable.
 class HeightOffset {
  public:
-  /// @param witnesses all senders heard lately that tell a height, in any order.
+  /// @param witnesses all senders heard lately that report a height, in any order.
   /// @return whether the offset changed.
   bool Judge(std::span<const HeightWitness> witnesses);
 

@@ -7,8 +7,8 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kFade_m = 60.0;
-constexpr double kFade = 0.98;  // Per height.
+constexpr double kFade_m = 60.0;  // Way after which a height counts 1/e.
+constexpr double kFade = 0.98;    // Per height.
 constexpr double kFresh_s = 5.0;
 // Below this spread of places (1 sigma) noise of the heights is read as a grade.
 constexpr double kLeastSpread_m = 5.0;

@@ -17,7 +17,7 @@ class HeightTrack {
   ///        or not.
   void Add(Timestamp stamp, double moved_m, std::optional<double> height_m);
 
-  /// On the line, at the newest place; nullopt where no height was told in the last 5 s.
+  /// On the line, at the newest position; nullopt where no height was reported in the last 5 s.
   [[nodiscard]] std::optional<double> HeightAt(Timestamp now) const;
   /// Rise per metre ahead as far as it is certain (one sigma nearer to 0); 0 where unknown.
   [[nodiscard]] double grade() const;

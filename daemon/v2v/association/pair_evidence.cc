@@ -24,7 +24,7 @@ double LogNormal(double residual, double sigma) {
 
 // Upper 99.5 % point of chi-square by Wilson and Hilferty (1931), good to 1 % from 4 dof on.
 double UpperChiSquare(double dof) {
-  constexpr double kZ = 2.576;
+  constexpr double kZ = 2.576;  // Normal quantile of 99.5 %.
   const double a = 2.0 / (9.0 * dof);
   return dof * std::pow(1.0 - a + kZ * std::sqrt(a), 3);
 }

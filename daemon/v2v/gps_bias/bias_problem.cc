@@ -15,7 +15,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr int kIterations = 10;
+constexpr int kIterations = 10;  // At most; the problem is nearly linear.
 
 using Block = std::array<double, 2>;
 

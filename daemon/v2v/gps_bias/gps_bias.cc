@@ -42,8 +42,8 @@ BiasReport GpsBias::Solve(Timestamp second) const {
     const BiasSolution solution = SolveBias(blocks, second, config_);
     if (!solution.is_usable) break;
     // A sender too far off or changing too much is judged by its own residuals: all such senders go
-    // at once. A sender that distorts the common part makes others look guilty too: only the worst
-    // goes, and when the rounds are used up all that still look so.
+    // at once. A sender that distorts the common part makes others exceed the limit too: each round
+    // removes only the worst sender; after the last round all that exceed the limit are removed.
     std::vector<BiasVerdict> verdicts;
     std::size_t worst = blocks.size();
     BiasVerdict gravest = BiasVerdict::kLeadsCommon;

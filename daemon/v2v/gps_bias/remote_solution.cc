@@ -24,9 +24,9 @@ using remote::Blocks;
 using remote::kConstant;
 
 constexpr int kIterations = 20;
-constexpr double kSlopePrior_mps = 1.0;
-constexpr double kAtBoundSigmas = 2.0;
-constexpr double kTurnPrior_rad = 0.5;
+constexpr double kSlopePrior_mps = 1.0;  // Of a bias that drifts.
+constexpr double kAtBoundSigmas = 2.0;   // Added to a latency before it meets its limit.
+constexpr double kTurnPrior_rad = 0.5;   // Hardly any: the data decide.
 
 double Spread(std::vector<double> values) {
   std::ranges::sort(values);
@@ -269,7 +269,7 @@ std::vector<RemoteSolution> SolveRemotes(const std::vector<RemotePair>& pairs, d
   for (RemoteSolution& s : solutions) {
     if (s.verdict == CalibrationVerdict::kEstimated) used.push_back(&s);
   }
-  // Whom the mean of the others, with the spread honest senders have, does not explain.
+  // Senders that the mean of the others, with the spread of honest senders, does not explain.
   const double own = rules.noise.sender_sigma_m * rules.noise.sender_sigma_m;
   std::vector<RemoteSolution*> leading;
   for (RemoteSolution* one : used) {

@@ -7,7 +7,7 @@
 namespace v2vouch {
 namespace {
 
-// The whole second that ends the one `stamp` lies in.
+// The end of the second that `stamp` lies in.
 std::int64_t EndOf(Timestamp stamp) {
   const std::int64_t us = ToMicros(stamp);
   return us / kSecond_us + (us % kSecond_us > 0 ? 1 : 0);

@@ -24,7 +24,7 @@ class DelayCheck {
 
 /// `size_change`, WITHDRAW, on the message in which length or width differs from the
 /// last told by more than size_change_m, or by more than size_change_share of it. The new size is
-/// the reference from then on, so that one correction is told once.
+/// the reference from then on, so that one correction is reported once.
 class SizeCheck {
  public:
   std::optional<Finding> Judge(std::optional<double> length_m, std::optional<double> width_m,

@@ -7,10 +7,10 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kLongestSilence_s = 1.0;
+constexpr double kLongestSilence_s = 1.0;  // After it the comparison starts again.
 // A heading that turns by more than this (cosine) between two messages has changed its meaning.
 constexpr double kTurned = -0.7;
-// A displacement of another size than the speed promises settles nothing.
+// A displacement that does not match the speed decides nothing.
 constexpr double kLeastShare = 0.4;
 constexpr double kMostShare = 2.5;
 

@@ -14,10 +14,10 @@ namespace v2vouch {
 ///
 ///     v = s u or -s u,  u = heading as sent, s = speed as sent
 ///
-/// *Which of the two* is settled by displacement, whatever the first message suggested: D = way
+/// *Which of the two* is decided by displacement, whatever the first message suggested: D = way
 /// between the claimed places, W = integral of s u dt over at least kLeastWay_m;
 /// D . W > |D||W| / 2 is motion along the heading, < -|D||W| / 2 motion against it. Until then the
-/// last settled answer holds; in reverse gear the reading in which the body keeps its direction.
+/// last decision holds; in reverse gear the reading in which the body keeps its direction.
 /// *The body's direction* is against v in reverse gear; without a gear it keeps its direction as
 /// long as the vehicle is no faster than kMostReverse_mps (faster is forwards).
 ///

@@ -11,8 +11,8 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kTotalBurst_s = 0.2;
-constexpr double kSweep_s = 0.5;
+constexpr double kTotalBurst_s = 0.2;  // Of the total rate that may come at once.
+constexpr double kSweep_s = 0.5;       // Between two searches for silent senders.
 // A sender heard within this time is in use: no newcomer takes its place.
 constexpr double kInUse_s = 1.0;
 

@@ -35,7 +35,7 @@ struct IntakeConfig {
   double sender_timeout_s = 5.0;
   double min_position_sigma_m = 0.5;  ///< Reported accuracy is clamped to this range.
   double max_position_sigma_m = 3.0;
-  double usable_position_sigma_m = 6.0;  ///< A place told to be worse is neither used nor judged.
+  double usable_position_sigma_m = 6.0;  ///< A worse reported position is neither used nor judged.
   double unknown_position_sigma_m = 2.0;
   bool message_verdicts = false;  ///< Report of every message what became of it.
   std::uint32_t own_id = 0;       ///< Our own TemporaryID where fixed; 0 = unknown.
@@ -73,7 +73,7 @@ struct EgoPlace {
 };
 
 /// One sender as heard. Function of its own messages alone (never of the ego), so it is never
-/// rolled back. A sender that tells no height is at 0; compare places with HorizontalDistance.
+/// rolled back. A sender without a height is at 0; compare positions with HorizontalDistance.
 /// State lives in a plane anchored where the sender was first heard, moved along every 2 km.
 struct SenderTrack {
   SenderId sender = 0;

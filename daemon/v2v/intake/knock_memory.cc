@@ -4,9 +4,9 @@
 namespace v2vouch {
 namespace {
 
-constexpr std::size_t kEntries = 16384;
-constexpr int kTickShift = 14;          // 2^14 us.
-constexpr std::uint32_t kMemory = 122;  // Ticks: 2 s.
+constexpr std::size_t kEntries = 16384;  // A flood of 8000 new ids a second for 2 s.
+constexpr int kTickShift = 14;           // 2^14 us.
+constexpr std::uint32_t kMemory = 122;   // Ticks: 2 s.
 
 }  // namespace
 

@@ -10,7 +10,7 @@
 namespace v2vouch {
 
 /// Admission filter for new identities, in fixed memory. The first message of an unknown id leaves
-/// an admission token (a knock); a second one within 2 s finds it and may be admitted. In a flood
+/// an admission token; a second one within 2 s finds it and may be admitted. In a flood
 /// where every message has its own identity no second message comes, so the flood does not spend
 /// the budget of new senders.
 ///

@@ -8,15 +8,15 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kFreedom = 4.0;
-constexpr double kMostNis = 40.0;
-constexpr double kUnseen_s = 0.25;
-constexpr double kMemory_s = 2.0;  // A place left longer ago is left for good.
+constexpr double kFreedom = 4.0;    // Of a NIS with course; others are scaled to it.
+constexpr double kMostNis = 40.0;   // One outlier of ten messages adds 4 to the mean.
+constexpr double kUnseen_s = 0.25;  // From this gap on the motion between is unknown.
+constexpr double kMemory_s = 2.0;   // A place left longer ago is left for good.
 constexpr std::uint32_t kLastFive = 0b11111;
 constexpr double kAccusingJump =
     1.25;  // Times the limit; raw fixes among high buildings jump, too.
 constexpr double kStepNoise_mps = 2.0;
-constexpr double kStepSpan_s = 1.0;
+constexpr double kStepSpan_s = 1.0;  // Messages farther apart are not compared.
 
 double Unexplained(const PlaceAndVelocity& from, const PlaceAndVelocity& to) {
   const double dt_s = to.time_s - from.time_s;

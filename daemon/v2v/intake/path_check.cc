@@ -9,8 +9,8 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kLongestSilence_s = 2.0;
-constexpr double kLongestWindow_s = 5.0;
+constexpr double kLongestSilence_s = 2.0;  // After it the path starts again.
+constexpr double kLongestWindow_s = 5.0;   // Of the regression.
 constexpr std::array<double, 6> kWindows_s{1.0, 1.5, 2.0, 3.0, 4.0, 4.9};
 constexpr std::size_t kFewest = 6;  // Places: a broken line has three parameters.
 constexpr double kScatter_m = 0.4;

@@ -16,7 +16,7 @@ struct PathStep {
   double dt_s = 0.0;  ///< Between the claimed times of the two contents, > 0.
   Eigen::Vector2d moved_m = Eigen::Vector2d::Zero();    ///< Between the places, east-north.
   Eigen::Vector2d claimed_m = Eigen::Vector2d::Zero();  ///< Way that the claimed motion would make.
-  double sigma_m = 1.5;  ///< Accuracy it is believed to have; bounds what scatter may excuse.
+  double sigma_m = 1.5;  ///< Assumed accuracy; bounds how much scatter is accepted as noise.
 };
 
 /// The way of a vehicle that goes from one velocity to another in `dt_s`: the chord of the arc

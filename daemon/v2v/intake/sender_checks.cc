@@ -9,7 +9,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kContested_s = 2.0;
+constexpr double kContested_s = 2.0;  // So long the same core data under two ids counts.
 // Claimed times closer than this are one: GNSS units repeat a place with its stamp.
 constexpr double kSameTime_s = 0.02;
 constexpr double kStanding_mps = 0.5;  // Without a course, speed below this makes no way.

@@ -13,9 +13,9 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kReanchor_m = 2000.0;
-constexpr double kMinSigma_m = 0.5;
-constexpr double kPositionAge_s = 0.15;
+constexpr double kReanchor_m = 2000.0;   // From the plane's origin; 0.3 m of curvature.
+constexpr double kMinSigma_m = 0.5;      // No claim is believed better.
+constexpr double kPositionAge_s = 0.15;  // See sender_filter.h.
 constexpr double kSpeedSigma_mps = 0.3;  // SAE J2945/1: 0.28 m/s.
 constexpr double kCourseSigma_rad = FromDegrees(2.0);
 constexpr double kCourseVelocitySigma_mps = 0.3;

@@ -26,7 +26,7 @@ bool IsOfAPart(const SensorMeasurement& measurement, const BridgeConfig& config)
 
 // A radar has measured a point on the vehicle where its sender has it, and the rest of it there
 // lies behind something. Where the point is not on that footprint the claim has left the vehicle
-// that the sensors see, and what may cover the claimed position excuses nobody.
+// that the sensors see; a cover of the claimed position alone makes no partial observation.
 bool IsOnPartlyCovered(const Occluder& expected, const SensorMeasurement& measurement,
                        const EgoState& ego, const V2vView& view, const VisibilityMap& map) {
   const auto* z = std::get_if<RadarMeasurement>(&measurement);

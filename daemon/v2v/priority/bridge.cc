@@ -7,7 +7,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kSigmas = 2.0;
+constexpr double kSigmas = 2.0;  // Of speed and heading at the bridge's start.
 
 }  // namespace
 

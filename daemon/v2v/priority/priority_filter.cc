@@ -55,7 +55,7 @@ bool UpdateRow(double y, const Rows_t<1>& H, double sigma, double gate, Vector& 
   return JosephUpdate(innovation, H, R, x, P);
 }
 
-// The same motion told with the other end as the front.
+// The same motion with the vehicle's other end as its front.
 void TurnRound(Vector& x, Matrix& P) {
   x[kYaw] = WrapAngle(x[kYaw] + kPi);
   for (const int i : {static_cast<int>(kSpeed), static_cast<int>(kAccel)}) {

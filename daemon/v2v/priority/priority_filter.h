@@ -122,7 +122,7 @@ class PriorityFilter {
   [[nodiscard]] const Matrix& covariance() const { return covariance_; }
 
  private:
-  // Turns the state round where the claim tells the same motion with the other end as the front.
+  // Turns the state round where the claim is the same motion with the other end as the front.
   void FaceAs(const ClaimInOdometry& claim);
   bool TakeMotion(const ClaimInOdometry& claim, const PriorityFilterConfig& config);
 

@@ -50,7 +50,7 @@ struct PriorityVehicle {
   double existence = 1.0;
   Visibility visibility = Visibility::kVisible;
   SensorSupport support{};
-  TrackEvents events = 0;  ///< What its sender last told.
+  TrackEvents events = 0;  ///< As its sender last reported.
 
   [[nodiscard]] bool has_ended() const { return id == 0; }
 

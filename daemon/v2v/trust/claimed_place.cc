@@ -7,7 +7,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kLeast = 1e-5;
+constexpr double kLeast = 1e-5;  // Of a likelihood, so that doubt can fade again.
 
 // Since when a condition has held without a break.
 void KeepSince(bool holds, Timestamp now, std::optional<Timestamp>& since) {

@@ -8,7 +8,7 @@
 namespace v2vouch {
 namespace {
 
-constexpr int kMaxDoublings = 16;
+constexpr int kMaxDoublings = 16;      // Of a penalty's time; more would overflow.
 constexpr double kMostCredit_s = 0.5;  // For one message, however long the silence before it.
 
 double Doubled(double base_s, int times, double most_s) {
@@ -61,7 +61,7 @@ bool SenderTrust::OnCoObservation(const CoObservation& observation, bool may_acc
     StartAgain(observation.stamp);
     return false;
   }
-  // A track that breaks off again and again never settles for the checks below.
+  // Residuals that jump again and again never settle, so the checks below would never judge.
   if (is_relied_on() && observation.is_own_motion_whole &&
       track_motion_.HasBroken(observation.stamp) && IsFarApart(observation, config)) {
     StartAgain(observation.stamp);

@@ -6,11 +6,11 @@
 namespace v2vouch {
 namespace {
 
-constexpr double kMostAccel_mps2 = 8.0;
-constexpr double kNoise_mps = 1.5;
-constexpr double kSpan_s = 0.6;
-constexpr double kMemory_s = 3.0;
-constexpr double kSpacing_s = 0.07;  // The ring spans kSpan_s at any rate of messages.
+constexpr double kMostAccel_mps2 = 8.0;  // Emergency braking on dry asphalt.
+constexpr double kNoise_mps = 1.5;       // Of a track's velocity.
+constexpr double kSpan_s = 0.6;          // Velocities are compared over so long.
+constexpr double kMemory_s = 3.0;        // So long residuals cause no blame.
+constexpr double kSpacing_s = 0.07;      // The ring spans kSpan_s at any rate of messages.
 
 }  // namespace
 

@@ -16,9 +16,12 @@
 #include "daemon/rim/wire/codec.h"
 #include "sim/sensors/bsm.h"
 #include "sim/world/overlay.h"
+#include "tests/support/simulated_events.h"
 
 namespace v2vouch::sim {
 namespace {
+
+using testing::AllEvents;
 
 std::unique_ptr<World> Shipped(const std::string& name, std::uint64_t seed,
                                SensorMode mode = SensorMode::kRealistic) {
@@ -29,17 +32,6 @@ std::unique_ptr<World> Shipped(const std::string& name, std::uint64_t seed,
   auto world = World::Make(scenario, seed, problems);
   for (const std::string& problem : problems) ADD_FAILURE() << problem;
   return world;
-}
-
-std::vector<SimEvent> AllEvents(const World& world, std::uint64_t seed) {
-  Simulation simulation(world, seed);
-  std::vector<SimEvent> all;
-  std::vector<SimEvent> events;
-  for (bool more = true; more;) {
-    more = simulation.Step(events);
-    all.insert(all.end(), events.begin(), events.end());
-  }
-  return all;
 }
 
 template <class T>
