@@ -91,7 +91,7 @@ bool Membership::Renew() {
   if (device == 0) return false;  // Down: some day there is a route again.
   if (device == device_ && IsListening(device, group_)) return false;
   // The old one first: left behind on an interface that came back it would make the new one fail.
-  if (device_ != 0) Set(IP_DROP_MEMBERSHIP, device_);
+  if (device_ != 0) static_cast<void>(Set(IP_DROP_MEMBERSHIP, device_));
   const int error = Set(IP_ADD_MEMBERSHIP, device);
   device_ = error == 0 || error == EADDRINUSE ? device : 0;
   return device_ != 0;
