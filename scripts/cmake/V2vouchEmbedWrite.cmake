@@ -21,7 +21,7 @@ foreach(file ${FILES})
   math(EXPR index "${index} + 1")
 endforeach()
 file(WRITE "${OUT}" "// Written by scripts/cmake/V2vouchEmbedWrite.cmake.
-#include \"daemon/programs/view/page_files.h\"
+#include \"daemon/rim/page/page_files.h\"
 
 namespace v2vouch {
 namespace {

@@ -13,6 +13,7 @@
 #include "sim/behaviour/evaluation.h"
 #include "sim/report/log_report.h"
 #include "sim/report/report.h"
+#include "sim/report/scene_clip.h"
 #include "sim/report/scorecard_text.h"
 #include "sim/run_log/why_not_judged.h"
 #include "sim/spoofing/spoof_json.h"
@@ -151,7 +152,8 @@ int ReportWithoutTruth(const std::string& path, const v2vouch::evaluation::RunLo
   std::string error;
   if (!ReadLogFacts(path, facts, error)) return Complain(error);
   const int code =
-      PutReport(folder, LogReportHtml(log, facts, PicturesOf(path)), StoryWithoutTruth(log));
+      PutReport(folder, LogReportHtml(log, facts, PicturesOf(path), SceneClip(path, {})),
+                StoryWithoutTruth(log));
   return code != v2vouch::kExitGood ? code : PrintSummary(path, log, as_json);
 }
 
@@ -253,7 +255,8 @@ int main(int argc, char** argv) {
     if (!ReadLogFacts(log_path, facts, error)) return Complain(error);
     const auto liars = LiarsOf(log_path);
     const std::string html =
-        ReportHtml(*evaluation, paper.get(), PicturesOf(log_path), liars.get(), &facts);
+        ReportHtml(*evaluation, paper.get(), PicturesOf(log_path), liars.get(), &facts,
+                   SceneClip(log_path, MomentWorthSeeing(*evaluation)));
     const int code = PutReport(options.report_folder, html, Story(*evaluation, liars.get()));
     if (code != v2vouch::kExitGood) return code;
   }

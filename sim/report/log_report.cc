@@ -82,7 +82,7 @@ std::string RefusalsHtml(const LogFacts& facts) {
 }
 
 std::string LogReportHtml(const RunLog& log, const LogFacts& facts,
-                          const std::vector<ReportPicture>& pictures) {
+                          const std::vector<ReportPicture>& pictures, const std::string& clip) {
   Timestamp begin = facts.begin;
   for (const ListKind kind : kLists) {
     // Lists bear message time; the recorder's clock may be another.
@@ -98,6 +98,7 @@ std::string LogReportHtml(const RunLog& log, const LogFacts& facts,
       PageHead("recorded drive", Number(log.log_seconds, 1) + " s, " + std::to_string(log.events) +
                                      " events, no truth");
   out += Card("What happened", "", StoryHtml(StoryWithoutTruth(log)));
+  if (!clip.empty()) out += Card("Play it", kClipNote, clip);
   if (!pictures.empty()) out += Card("Through the camera", kCameraNote, PicturesHtml(pictures));
   out +=
       Card("PRIORITY: held when", "Pale red and violet: kept by its BSMs while no sensor sees it.",

@@ -1,31 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/report/page.h"
 
+#include "daemon/rim/json/json_text.h"
 #include "sim/plot/report_style.h"
 #include "sim/plot/svg.h"
 
 namespace v2vouch::evaluation {
-namespace {
-
-// RFC 4648, section 4.
-std::string Base64(const std::vector<std::uint8_t>& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      group = group << 8U | (i + k < bytes.size() ? bytes[i + k] : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool is_padding = i + k > bytes.size();
-      out.push_back(is_padding ? '=' : kDigits[group >> (18U - 6U * k) & 63U]);
-    }
-  }
-  return out;
-}
-
-}  // namespace
-
 std::string PageHead(const std::string& title, const std::string& sub) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>V2Vouch: " +
          Escape(title) + "</title>\n<style>" + ReportStyle() +

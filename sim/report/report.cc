@@ -160,9 +160,14 @@ std::string Pictures(const Evaluation& evaluation, std::optional<std::size_t> cr
 
 }  // namespace
 
+std::optional<Timestamp> MomentWorthSeeing(const Evaluation& evaluation) {
+  if (evaluation.grid.empty()) return std::nullopt;
+  return evaluation.grid[ChooseMoments(evaluation, CriticalVehicle(evaluation))[1].instant];
+}
+
 std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
                        const std::vector<ReportPicture>& pictures, const LiarFacts* liars,
-                       const LogFacts* facts) {
+                       const LogFacts* facts, const std::string& clip) {
   const auto critical = CriticalVehicle(evaluation);
   const std::string name =
       evaluation.log.specs.name.empty() ? "recorded run" : evaluation.log.specs.name;
@@ -174,6 +179,7 @@ std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
           (evaluation.log.specs.has_ideal_points ? "ideal point targets" : "extended vehicles") +
           ", disc of " + Number(evaluation.settings.radius_m) + " m round the ego");
   out += Card("What happened", "", StoryHtml(Story(evaluation, liars)));
+  if (!clip.empty()) out += Card("Play it", kClipNote, clip);
   out += Card(
       "The scene",
       "From above, ego heading up. Moments are chosen around the V2V vehicle that no sensor sees "

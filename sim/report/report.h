@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,17 @@ struct ReportPicture {
   std::vector<std::uint8_t> jpeg;
 };
 
-/// The report as one self-contained HTML page: no script, no outside file, no date; the same run
-/// gives the same bytes. `paper` is the same run with the paper's association, `liars` what is
-/// known of false BSMs, `facts` the log's own figures; each may be null. `pictures` stand inside
-/// the page.
+/// The report as one self-contained HTML page: no outside file, no date; the same run gives the
+/// same bytes. `paper` is the same run with the paper's association, `liars` what is known of false
+/// BSMs, `facts` the log's own figures; each may be null. `pictures` stand inside the page, and so
+/// does `clip` (scene_clip.h; the one part with scripts).
 std::string ReportHtml(const Evaluation& evaluation, const Evaluation* paper,
                        const std::vector<ReportPicture>& pictures = {},
-                       const LiarFacts* liars = nullptr, const LogFacts* facts = nullptr);
+                       const LiarFacts* liars = nullptr, const LogFacts* facts = nullptr,
+                       const std::string& clip = "");
+
+/// The middle one of the pictures' moments: where the clip begins to be worth a look.
+std::optional<Timestamp> MomentWorthSeeing(const Evaluation& evaluation);
 
 /// Writes a page to `folder`/index.html, making the folder.
 /// @return the file's path, or empty with `error` set.

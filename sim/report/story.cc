@@ -185,6 +185,11 @@ std::string Story(const Evaluation& evaluation, const LiarFacts* liars) {
 }
 
 std::string StoryWithoutTruth(const RunLog& log) {
+  if (std::ranges::all_of(log.lists, [](const auto& lists) { return lists.empty(); })) {
+    return "The log holds no track lists, so there is nothing to tell of vehicles: run "
+           "v2vouch-replay "
+           "over it first. Below is what came in.";
+  }
   std::string text = "There is no truth to judge by; this is what was listed. ";
   bool is_first = true;
   for (const ListKind kind : {ListKind::kLocal, ListKind::kPriority}) {

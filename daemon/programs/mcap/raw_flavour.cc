@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "daemon/rim/io/log_format.h"
-#include "daemon/rim/message_schema/json_text.h"
+#include "daemon/rim/json/json_text.h"
 
 namespace v2vouch::mcap_export {
 namespace {
@@ -46,7 +46,7 @@ std::optional<std::uint16_t> RawWriter::ChannelOf(const LogEvent& event) {
   const std::uint64_t fingerprint = message_schema::FingerprintOf(event.bytes);
   const auto key = std::make_pair(event.channel, fingerprint);
   if (const auto found = channels_.find(key); found != channels_.end()) return found->second;
-  if (channels_.size() >= kMostChannels || !message_schema::IsUtf8(event.channel)) {
+  if (channels_.size() >= kMostChannels || !IsUtf8(event.channel)) {
     return std::nullopt;
   }
   std::uint16_t schema = 0;

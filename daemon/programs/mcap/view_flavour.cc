@@ -3,21 +3,22 @@
 
 #include <span>
 
-#include "daemon/programs/mcap/foxglove_messages.h"
 #include "daemon/programs/mcap/raw_flavour.h"
+#include "daemon/rim/foxglove/messages.h"
+#include "daemon/rim/json/json_text.h"
 #include "daemon/rim/message_schema/json_text.h"
 
 namespace v2vouch::mcap_export {
 
 void ViewWriter::Write(const LogEvent& event) {
   const message_schema::Type* type = message_schema::TypeOf(event.bytes);
-  if (type == nullptr || !message_schema::IsUtf8(event.channel)) {
+  if (type == nullptr || !IsUtf8(event.channel)) {
     ++left_out_;
     return;
   }
-  const auto messages = FoxgloveMessages(event.channel, event.bytes);
+  const auto messages = messages_.Of(event.channel, event.bytes, event.received);
   for (const ViewMessage& message : messages) {
-    WriteJson(message.topic, std::string(message.schema), FoxgloveSchema(message.schema),
+    WriteJson(message.topic, std::string(message.schema), foxglove::Schema(message.schema),
               message.json, event.received);
   }
   if (type->name == "camera_image_t") {

@@ -54,11 +54,11 @@ bool LogPlayer::Index(const Progress& progress) {
   std::int64_t newest = 0;
   std::int64_t count = 0;
   while (reader_->Next(event)) {
-    const std::int64_t received = ToMicros(event.received);
-    newest = marks_.empty() ? received : std::max(newest, received);
+    const ArrivalClock before = clock_;
+    newest = ToMicros(clock_.Of(event.received));
     if (marks_.empty() || newest - marks_.back().received_us >= kMarkEvery_us ||
         offset - marks_.back().offset >= kMarkBytes) {
-      marks_.push_back({newest, offset});
+      marks_.push_back({newest, offset, before});
     }
     // All but what only the picture of the moment needs.
     const std::string& channel = event.channel;
@@ -94,10 +94,12 @@ void LogPlayer::Seek(std::int64_t target_us) {
   const std::int64_t target = std::clamp(target_us, state_.begin_us, state_.end_us);
   const auto after =
       std::ranges::upper_bound(marks_, target - kBeforeTarget_us, {}, &Mark::received_us);
-  const std::int64_t offset = after == marks_.begin() ? (marks_.empty() ? 0 : marks_.front().offset)
-                                                      : std::prev(after)->offset;
   scene_.Forget();
-  reader_->SeekTo(offset);
+  if (!marks_.empty()) {
+    const Mark& mark = after == marks_.begin() ? marks_.front() : *std::prev(after);
+    reader_->SeekTo(mark.offset);
+    clock_ = mark.clock;
+  }
   has_next_ = false;
   state_.now_us = target;
   ++state_.seeks;
@@ -113,6 +115,7 @@ bool LogPlayer::PlayUntil(std::int64_t target_us, steady_clock::time_point deadl
     if (!has_next_) {
       has_next_ = reader_->Next(next_);
       if (!has_next_) return true;
+      next_.received = clock_.Of(next_.received);
     }
     if (ToMicros(next_.received) > target_us) return true;
     scene_.Take(next_.channel, next_.bytes, next_.received);

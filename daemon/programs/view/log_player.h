@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/rim/io/arrival_clock.h"
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/view/playback.h"
 #include "daemon/rim/view/scene.h"
@@ -18,7 +19,8 @@ namespace v2vouch {
 std::string ConfigIn(const std::string& log);
 
 /// Plays a log of any size into a scene. The log is read once at start: where in the file each
-/// quarter of a second begins, and what happened, for the time line. Memory: 16 bytes per mark.
+/// quarter of a second begins, and what happened, for the time line. Memory: 40 bytes per mark.
+/// A recorder's clock that was set back does not fold the drive over itself (ArrivalClock).
 class LogPlayer : public view::Player {
  public:
   using Progress = std::function<bool(double share)>;  ///< False: stop.
@@ -40,6 +42,7 @@ class LogPlayer : public view::Player {
   struct Mark {
     std::int64_t received_us = 0;
     std::int64_t offset = 0;
+    ArrivalClock clock;  // Before the event there.
   };
   LogPlayer(std::unique_ptr<LogReader> reader, view::Scene& scene)
       : reader_(std::move(reader)), scene_(scene) {}
@@ -52,6 +55,7 @@ class LogPlayer : public view::Player {
   std::vector<Mark> marks_;
   view::PlaybackState state_;
   LogEvent next_;
+  ArrivalClock clock_;
   bool has_next_ = false;
   std::int64_t damaged_ = 0;
   bool has_lists_ = false;

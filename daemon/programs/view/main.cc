@@ -109,7 +109,13 @@ int Run(const Options& options, const v2vouch::DaemonConfig& config) {
       return kExitFailed;
     }
     if (!player->has_lists()) {
-      std::cerr << "v2vouch-view: note: the log holds no lists; run v2vouch-replay over it first\n";
+      std::cerr
+          << "v2vouch-view: note: the log holds neither TRACKS_LOCAL nor TRACKS_PRIORITY; run "
+             "v2vouch-replay over it first\n";
+    }
+    if (player->damaged() > 0) {
+      std::cerr << "v2vouch-view: note: " << player->damaged()
+                << " damaged stretches of the log are left out\n";
     }
   } else {
     const std::string url = options.lcm_url.empty() ? config.lcm.url : options.lcm_url;

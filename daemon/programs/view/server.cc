@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/programs/view/page_files.h"
+#include "daemon/rim/page/page_files.h"
 
 namespace v2vouch {
 namespace {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "daemon/rim/json/json_text.h"
 #include "daemon/rim/message_schema/json_text.h"
 
 namespace v2vouch::message_schema {

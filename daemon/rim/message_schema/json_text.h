@@ -20,10 +20,4 @@ std::optional<std::string> JsonText(const Type& type, std::span<const std::uint8
 /// A JSON Schema of what JsonText() makes of this type: units and comments as descriptions.
 std::string JsonSchema(const Type& type);
 
-/// Building blocks of it, for other JSON written by hand.
-void AppendJsonString(std::string& json, std::string_view text);
-void AppendJsonNumber(std::string& json, double value);  ///< Shortest exact form, or null.
-void AppendBase64(std::string& json, std::span<const std::uint8_t> bytes);
-bool IsUtf8(std::string_view text);
-
 }  // namespace v2vouch::message_schema

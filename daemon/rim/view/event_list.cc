@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/rim/view/event_list.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
 #include "daemon/common/data/check.h"
-#include "daemon/rim/view/json_text.h"
+#include "daemon/rim/wire/sender_id.h"
 
 namespace v2vouch::view {
 namespace {
+
+using wire::SenderName;
+using wire::SenderOf;
 
 constexpr std::size_t kMostEvents = 2000;
 constexpr std::size_t kMostRemembered = 4096;
@@ -19,6 +24,31 @@ std::string Short(std::int64_t id) {
   return digits.size() > 5 ? digits.substr(digits.size() - 5) : digits;
 }
 
+const char* KindInWords(int kind) {
+  constexpr std::array kWords = {"warned of",
+                                 "collision ahead with",
+                                 "hard braking ahead of us:",
+                                 "crossing traffic:",
+                                 "oncoming while turning left:",
+                                 "beside us:",
+                                 "in the way of a lane change:"};
+  const bool is_known = kind > 0 && kind < static_cast<int>(kWords.size());
+  return kWords[static_cast<std::size_t>(is_known ? kind : 0)];
+}
+
+const char* LevelInWords(int level) {
+  switch (level) {
+    case warning_t::ADVISE:
+      return "caution: ";
+    case warning_t::WARN:
+      return "warning: ";
+    case warning_t::URGENT:
+      return "urgent: ";
+    default:
+      return "";
+  }
+}
+
 std::string Seconds(std::int64_t us) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f s", 1e-6 * static_cast<double>(us));
@@ -26,12 +56,6 @@ std::string Seconds(std::int64_t us) {
 }
 
 }  // namespace
-
-std::uint32_t SenderOf(const std::uint8_t* octets) {
-  std::uint32_t sender = 0;
-  for (int i = 0; i < 4; ++i) sender = (sender << 8) | octets[i];
-  return sender;
-}
 
 std::string CheckInWords(const std::string& check) {
   for (int i = 0; i < static_cast<int>(Check::kCount); ++i) {
@@ -42,9 +66,10 @@ std::string CheckInWords(const std::string& check) {
 }
 
 void EventList::Add(std::int64_t at, std::string kind, std::string text, std::int64_t track_id,
-                    std::uint32_t sender) {
+                    std::uint32_t sender, std::int64_t local_id) {
   if (is_frozen_) return;
-  events_.push_back({next_number_++, at, std::move(kind), std::move(text), track_id, sender});
+  events_.push_back(
+      {next_number_++, at, std::move(kind), std::move(text), track_id, sender, local_id});
   if (events_.size() > kMostEvents) events_.pop_front();
 }
 
@@ -52,6 +77,7 @@ void EventList::Forget() {
   vehicles_.clear();
   doubted_.clear();
   notices_.clear();
+  warnings_.clear();
   has_list_ = false;
 }
 
@@ -129,6 +155,31 @@ void EventList::TakeStatus(const daemon_status_t& status, std::int64_t at) {
     now.insert(std::move(key));
   }
   notices_ = std::move(now);
+}
+
+void EventList::TakeWarnings(const warning_list_t& list, std::int64_t at) {
+  std::map<std::pair<int, std::int64_t>, int> now;
+  for (const warning_t& warning : list.warnings) {
+    if (warning.level < warning_t::ADVISE || warning.level > warning_t::URGENT) continue;
+    if (now.size() >= kMostRemembered) break;
+    // A vehicle goes by the same id while it is seen, whichever lists hold it.
+    const std::int64_t id = warning.local_id != 0 ? warning.local_id : warning.track_id;
+    const auto key = std::make_pair(static_cast<int>(warning.kind), id);
+    const auto before = warnings_.find(key);
+    const int highest = before == warnings_.end() ? 0 : before->second;
+    now[key] = std::max<int>(highest, warning.level);
+    if (warning.level <= highest) continue;
+    std::string text = std::string(LevelInWords(warning.level)) + KindInWords(warning.kind) +
+                       " vehicle " + Short(warning.track_id != 0 ? warning.track_id : id);
+    if (std::isfinite(warning.time_to_conflict_s)) {
+      text += ", contact in " + Seconds(static_cast<std::int64_t>(
+                                    1e6 * std::clamp(warning.time_to_conflict_s, 0.0, 1e6)));
+    }
+    if (warning.local_id == 0) text += "; hidden, known by V2V";
+    Add(at, "warned", std::move(text), warning.track_id, 0,
+        warning.track_id == 0 ? warning.local_id : 0);
+  }
+  warnings_ = std::move(now);
 }
 
 }  // namespace v2vouch::view

@@ -10,6 +10,7 @@
 #include "v2vouch/daemon_status_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
 #include "v2vouch/track_list_t.hpp"
+#include "v2vouch/warning_list_t.hpp"
 
 namespace v2vouch::view {
 
@@ -17,11 +18,12 @@ namespace v2vouch::view {
 struct ViewEvent {
   std::int64_t number = 0;  ///< Counts from 0, also over those forgotten.
   std::int64_t at = 0;      ///< When the message that told it arrived, microseconds.
-  /// validated, bridged, seen_again, ended, withdrawn, accused, notice.
+  /// validated, bridged, seen_again, ended, withdrawn, accused, warned, notice.
   std::string kind;
   std::string text;           ///< One plain sentence.
   std::int64_t track_id = 0;  ///< Of PRIORITY; 0 = none.
   std::uint32_t sender = 0;   ///< 0 = none.
+  std::int64_t local_id = 0;  ///< Of LOCAL, where the vehicle is not in PRIORITY; 0 = none.
 };
 
 /// Finds what happened by comparing each message with the one before. Keeps the newest 2000.
@@ -31,6 +33,8 @@ class EventList {
   void TakePriority(const track_list_t& list, std::int64_t at);
   void TakeReport(const misbehavior_report_t& report, std::int64_t at);
   void TakeStatus(const daemon_status_t& status, std::int64_t at);
+  /// A warning that begins, and one that grows stronger; from the level ADVISE on.
+  void TakeWarnings(const warning_list_t& list, std::int64_t at);
   /// No event is added any more: the whole drive's are known.
   void Freeze() { is_frozen_ = true; }
   /// After a jump in time: what is compared with is forgotten, the events stay.
@@ -47,21 +51,20 @@ class EventList {
     std::int64_t bridged_since = 0;
   };
   void Add(std::int64_t at, std::string kind, std::string text, std::int64_t track_id,
-           std::uint32_t sender);
+           std::uint32_t sender, std::int64_t local_id = 0);
 
   std::deque<ViewEvent> events_;
   std::int64_t next_number_ = 0;
   std::map<std::int64_t, Vehicle> vehicles_;
   std::map<std::uint32_t, std::int64_t> doubted_;  // Sender -> when a verdict last spoke.
   std::set<std::string> notices_;
+  std::map<std::pair<int, std::int64_t>, int>
+      warnings_;  // (kind, vehicle) -> highest level so far.
   bool has_list_ = false;
   bool is_frozen_ = false;
 };
 
 /// The check's name, and what it finds, in plain words.
 std::string CheckInWords(const std::string& check);
-
-/// J2735's TemporaryID as a number.
-std::uint32_t SenderOf(const std::uint8_t* octets);
 
 }  // namespace v2vouch::view

@@ -22,7 +22,9 @@ struct FoxgloveTopic {
     kGnss,
     kLog,
     kStatus,
-    kPicture
+    kPicture,
+    kFlatLocal,
+    kFlatPriority
   };
   std::string topic;
   std::string schema;  ///< E.g. foxglove.SceneUpdate.
@@ -33,14 +35,10 @@ struct FoxgloveTopic {
 /// All topics of this vehicle. The channel id of the protocol is the position + 1.
 std::vector<FoxgloveTopic> FoxgloveTopics(const VehicleConfig& vehicle);
 
-/// JSON Schema of the fields that we fill of a schema of Foxglove's; "" = an object of ours.
-std::string_view FoxgloveSchema(std::string_view name);
-
 /// Which version of its content the scene has now; 0 = none yet. Of the log: unused.
 std::int64_t FoxgloveRevision(const Scene& scene, const FoxgloveTopic& topic);
 
-/// The message of a topic. Frames: `odom` (odometry), `base_link` (rear axle), `sensor`s in it.
-/// Entities live 0.5 s, so that a daemon that ended leaves no car in the picture.
+/// The message of a topic, made by daemon/rim/foxglove.
 /// @param clears after a jump: what was shown before is deleted.
 std::string FoxgloveMessage(const Scene& scene, const FoxgloveTopic& topic, bool clears);
 

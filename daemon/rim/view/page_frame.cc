@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/rim/view/json_text.h"
+#include "daemon/rim/json/json_text.h"
+#include "daemon/rim/wire/sender_id.h"
 
 namespace v2vouch::view {
 namespace {
+
+using wire::SenderName;
+using wire::SenderOf;
 
 constexpr std::size_t kMostSenders = 300;  // Drawn; the nearest.
 constexpr std::size_t kMostRadarPoints = 1500;
@@ -244,6 +248,26 @@ void PutTruth(JsonText& json, const Scene& scene) {
   json.Close(']');
 }
 
+// Body frame of the ego at the warnings' time -> odometry frame.
+void PutWarnings(JsonText& json, const Scene& scene, std::int64_t now) {
+  json.Key("warnings").Open('[');
+  const auto& list = scene.warnings().message;
+  const auto ego = list ? scene.EgoAt(list->utime) : std::nullopt;
+  if (ego && IsRecent(list->utime, now)) {
+    for (const warning_t& warning : list->warnings) {
+      const MapPoint at = ego->ToOuter(warning.x_body_m, warning.y_body_m);
+      const MapPoint conflict = ego->ToOuter(warning.conflict_x_body_m, warning.conflict_y_body_m);
+      json.Open('{').Integer("kind", warning.kind).Integer("level", warning.level);
+      json.Text("vehicle", warning.track_id == 0 ? "" : std::to_string(warning.track_id));
+      json.Text("local", warning.local_id == 0 ? "" : std::to_string(warning.local_id));
+      json.Number("x", at.x_m, 2).Number("y", at.y_m, 2);
+      json.Number("cx", conflict.x_m, 2).Number("cy", conflict.y_m, 2);
+      json.Number("ttc", warning.time_to_conflict_s, 1).Close('}');
+    }
+  }
+  json.Close(']');
+}
+
 void PutLines(JsonText& json, std::string_view key,
               const std::vector<std::vector<MapPoint>>& lines) {
   json.Key(key).Open('[');
@@ -295,6 +319,7 @@ std::string PageFrame(const Scene& scene) {
   PutCameras(json, scene, now);
   PutObjects(json, scene, now);
   PutTruth(json, scene);
+  PutWarnings(json, scene, now);
   json.Integer("refused", scene.refused()).Close('}');
   return json.Take();
 }
@@ -360,6 +385,7 @@ std::string PageEvents(const EventList& events, std::int64_t from, std::int64_t&
     json.Open('{').Integer("n", event.number).Integer("t", event.at).Text("kind", event.kind);
     json.Text("text", event.text);
     if (event.track_id != 0) json.Text("vehicle", std::to_string(event.track_id));
+    if (event.local_id != 0) json.Text("track", std::to_string(event.local_id));
     if (event.sender != 0) json.Text("sender", SenderName(event.sender));
     json.Close('}');
     next = event.number + 1;

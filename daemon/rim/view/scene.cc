@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "daemon/rim/wire/codec.h"
+#include "daemon/rim/wire/sender_id.h"
 #include "v2vouch/bsm_verdict_t.hpp"
 #include "v2vouch/misbehavior_report_t.hpp"
 #include "v2vouch/text_t.hpp"
@@ -14,6 +15,8 @@
 
 namespace v2vouch::view {
 namespace {
+
+using wire::SenderOf;
 
 constexpr std::size_t kMostSenders = 4096;
 constexpr std::size_t kVerdictsKept = 10;
@@ -95,6 +98,7 @@ Scene::Scene(VehicleConfig vehicle, const wire::ChannelNames& names)
   channels_[names.status] = {Kind::kStatus, 0};
   channels_[names.misbehavior] = {Kind::kReport, 0};
   channels_[names.bsm_verdict] = {Kind::kVerdict, 0};
+  channels_["WARNINGS"] = {Kind::kWarnings, 0};
   channels_["TRUTH"] = {Kind::kTruth, 0};
   channels_["TRUTH_BSM"] = {Kind::kTruthBsm, 0};
   channels_["SIM_SCENARIO"] = {Kind::kScenario, 0};
@@ -117,6 +121,7 @@ void Scene::Forget() {
   gnss_ = {};
   status_ = {};
   truth_ = {};
+  warnings_ = {};
   events_.Forget();
   verdicts_.clear();
   trail_.clear();
@@ -166,6 +171,10 @@ bool Scene::Take(std::string_view channel, std::span<const std::uint8_t> bytes,
       return TakeReport(bytes);
     case Kind::kVerdict:
       return TakeVerdict(bytes);
+    case Kind::kWarnings:
+      if (!Keep(bytes, warnings_)) return false;
+      events_.TakeWarnings(*warnings_.message, received_);
+      return true;
     case Kind::kTruth:
       return Keep(bytes, truth_);
     case Kind::kTruthBsm:

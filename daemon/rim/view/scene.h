@@ -25,6 +25,7 @@
 #include "v2vouch/radar_scan_t.hpp"
 #include "v2vouch/track_list_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
+#include "v2vouch/warning_list_t.hpp"
 
 namespace v2vouch::view {
 
@@ -68,6 +69,7 @@ class Scene {
   }
   [[nodiscard]] const Newest<daemon_status_t>& status() const { return status_; }
   [[nodiscard]] const Newest<truth_list_t>& truth() const { return truth_; }
+  [[nodiscard]] const Newest<warning_list_t>& warnings() const { return warnings_; }
   [[nodiscard]] const Newest<gnss_fix_t>& gnss() const { return gnss_; }
   [[nodiscard]] const Newest<ego_motion_t>& ego_motion() const { return ego_motion_; }
   /// One per radar, source of objects and camera of the vehicle, in their order.
@@ -112,6 +114,7 @@ class Scene {
     kStatus,
     kReport,
     kVerdict,
+    kWarnings,
     kTruth,
     kTruthBsm,
     kScenario
@@ -141,6 +144,7 @@ class Scene {
   Newest<gnss_fix_t> gnss_;
   Newest<daemon_status_t> status_;
   Newest<truth_list_t> truth_;
+  Newest<warning_list_t> warnings_;
   Newest<RoadMap> map_;
   EventList events_;
   std::map<std::uint32_t, std::deque<SenderVerdict>> verdicts_;

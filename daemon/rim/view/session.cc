@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "daemon/rim/view/json_text.h"
+#include "daemon/rim/foxglove/messages.h"
+#include "daemon/rim/json/json_text.h"
 #include "daemon/rim/view/page_frame.h"
 
 namespace v2vouch::view {
@@ -227,7 +228,7 @@ std::string Session::Advertise() const {
     const FoxgloveTopic& topic = hub_.topics()[i];
     json.Open('{').Integer("id", static_cast<std::int64_t>(i) + 1).Text("topic", topic.topic);
     json.Text("encoding", "json").Text("schemaName", topic.schema);
-    json.Text("schema", FoxgloveSchema(topic.schema)).Text("schemaEncoding", "jsonschema");
+    json.Text("schema", foxglove::Schema(topic.schema)).Text("schemaEncoding", "jsonschema");
     json.Close('}');
   }
   json.Close(']').Close('}');

@@ -8,6 +8,7 @@
 #include "sim/behaviour/evaluation.h"
 #include "sim/report/log_report.h"
 #include "sim/report/report.h"
+#include "sim/report/scene_clip.h"
 #include "tests/sim/report/synthetic_run.h"
 
 namespace v2vouch::evaluation {
@@ -209,6 +210,23 @@ TEST(RunWithoutLists, IsAllMissedAndHasNoFigures) {
   const auto json = nlohmann::json::parse(ToJson(*evaluation, nullptr));
   EXPECT_TRUE(json.at("lists").at("local").at("gospa_mean").is_null());
   EXPECT_TRUE(json.at("hidden").at("rms_m").is_null());
+}
+
+// The file's own path is in the log that was read.
+TEST_F(EvaluatedRun, ClipHoldsTheDriveAndTheSameEveryTime) {
+  const std::string clip = SceneClip(evaluation_->log.path, MomentWorthSeeing(*evaluation_));
+  EXPECT_EQ(clip, SceneClip(evaluation_->log.path, MomentWorthSeeing(*evaluation_)));
+  EXPECT_THAT(clip, testing::HasSubstr("id=\"clip-data\">H4sI"));  // Gzip's magic in base64.
+  EXPECT_THAT(clip, testing::HasSubstr("class SceneView"));
+  const std::string html = ReportHtml(*evaluation_, nullptr, {}, nullptr, nullptr, clip);
+  EXPECT_THAT(html, testing::HasSubstr("<h2>Play it"));
+  EXPECT_THAT(html, testing::Not(testing::HasSubstr("src=\"http")));
+}
+
+TEST(RunWithoutLists, HasNoClip) {
+  const RunLog log = Recorded({.has_lists = false}, "synthetic_empty.lcm");
+  EXPECT_EQ(SceneClip(log.path, {}), "");
+  EXPECT_EQ(SceneClip("/dev/null", {}), "");
 }
 
 TEST(RunWithoutTruth, IsCountedButNotJudged) {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 
 #include "daemon/programs/mcap/convert.h"
-#include "daemon/programs/mcap/foxglove_messages.h"
+#include "daemon/programs/mcap/view_messages.h"
+#include "daemon/rim/foxglove/messages.h"
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/wire/codec.h"
 #include "v2vouch/camera_image_t.hpp"
@@ -131,7 +134,7 @@ TEST_F(McapExport, ViewFlavourHoldsListsAndScenesAndTellsWhatItLeavesOut) {
   ConvertResult result;
   std::string error;
   ASSERT_TRUE(LogToMcap(Path("a.lcm"), Path("a.mcap"), {}, GoOn, result, error)) << error;
-  EXPECT_EQ(result.messages, 3);  // List, scene, transform.
+  EXPECT_EQ(result.messages, 4);  // List, scene, transform, arrays for plots.
   EXPECT_EQ(result.left_out, 1);
   EXPECT_FALSE(McapToLog(Path("a.mcap"), Path("b.lcm"), GoOn, result, error));
   EXPECT_NE(error.find("--raw"), std::string::npos);
@@ -145,41 +148,70 @@ TEST_F(McapExport, InputIsNeverOverwritten) {
   EXPECT_FALSE(LogToMcap(Path("none.lcm"), Path("a.mcap"), {}, GoOn, result, error));
 }
 
-TEST(FoxgloveMessages, HiddenTrackIsABoxThatSaysSo) {
-  const auto messages = FoxgloveMessages("TRACKS_PRIORITY", ListBytes(1));
-  ASSERT_EQ(messages.size(), 1U);
-  EXPECT_EQ(messages[0].topic, "/scene/priority");
-  const auto entity = nlohmann::json::parse(messages[0].json)["entities"][0];
+std::vector<ViewMessage> MessagesOf(const std::string& channel,
+                                    const std::vector<std::uint8_t>& bytes) {
+  return ViewMessages().Of(channel, bytes, FromMicros(1));
+}
+
+const ViewMessage& On(const std::vector<ViewMessage>& messages, const std::string& topic) {
+  const auto found = std::ranges::find(messages, topic, &ViewMessage::topic);
+  if (found == messages.end()) throw std::runtime_error("no message on " + topic);
+  return *found;
+}
+
+TEST(ViewMessages, HiddenTrackIsABoxThatSaysSo) {
+  const auto messages = MessagesOf("TRACKS_PRIORITY", ListBytes(1));
+  const auto scene = nlohmann::json::parse(On(messages, "/v2vouch/priority").json);
+  const auto entity = scene["entities"][0];
   EXPECT_EQ(entity["frame_id"], "odom");
   EXPECT_EQ(entity["cubes"][0]["pose"]["position"]["x"], 12.0);
   EXPECT_EQ(entity["cubes"][0]["size"]["x"], 4.5);
-  EXPECT_EQ(entity["texts"][0]["text"], "0  0.0 m/s  hidden, 2.5 s left");
+  EXPECT_EQ(entity["texts"][0]["text"], "0 hidden, 2 s left");
   EXPECT_EQ(entity["timestamp"]["sec"], 1'700'000'000);
 }
 
-TEST(FoxgloveMessages, LatitudeIsInDegreesAndPicturesAreBase64) {
+TEST(ViewMessages, ListsAreArraysOfNumbersForPlots) {
+  const auto messages = MessagesOf("TRACKS_PRIORITY", ListBytes(3));
+  const auto plot = nlohmann::json::parse(On(messages, "/v2vouch/plot/priority").json);
+  EXPECT_EQ(plot["count"], 3);
+  EXPECT_EQ(plot["budget_s"], nlohmann::json({2.5, 2.5, 2.5}));
+  EXPECT_EQ(plot["own_age_s"][0], nullptr);  // Of no sensor.
+}
+
+TEST(ViewMessages, LatitudeIsInDegreesAndPicturesAreBase64) {
   gnss_fix_t fix{};
   fix.latitude_rad = 0.5;
   std::vector<std::uint8_t> bytes;
   wire::Encode(fix, bytes);
-  auto messages = FoxgloveMessages("EGO_GNSS", bytes);
+  auto messages = MessagesOf("EGO_GNSS", bytes);
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_NEAR(nlohmann::json::parse(messages[0].json)["latitude"].get<double>(), 28.6479, 1e-4);
 
   camera_image_t image{};
   image.encoding = "jpeg";
+  image.sensor = "\xff";  // No text: the channel names the topic.
   image.num_bytes = 3;
   image.data = {'M', 'a', 'n'};
   wire::Encode(image, bytes);
-  messages = FoxgloveMessages("CAMERA_FRONT_IMAGE", bytes);
+  messages = MessagesOf("CAMERA_FRONT_IMAGE", bytes);
   ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].topic, "/camera/CAMERA_FRONT_IMAGE");
   EXPECT_EQ(messages[0].schema, "foxglove.CompressedImage");
   EXPECT_EQ(nlohmann::json::parse(messages[0].json)["data"], "TWFu");
 }
 
-TEST(FoxgloveMessages, EverySchemaIsJsonWithTheFieldsThatAreFilled) {
-  for (const auto& message : FoxgloveMessages("TRACKS_LOCAL", ListBytes(2))) {
-    const auto schema = nlohmann::json::parse(FoxgloveSchema(message.schema));
+TEST(ViewMessages, WhatHappenedIsALog) {
+  ViewMessages messages;
+  messages.Of("TRACKS_PRIORITY", ListBytes(0), FromMicros(1));
+  const auto lines = messages.Of("TRACKS_PRIORITY", ListBytes(1), FromMicros(5'000'000));
+  const auto line = nlohmann::json::parse(On(lines, "/v2vouch/log").json);
+  EXPECT_EQ(line["name"], "validated");
+  EXPECT_EQ(line["timestamp"]["sec"], 5);
+}
+
+TEST(ViewMessages, EverySchemaIsJsonWithTheFieldsThatAreFilled) {
+  for (const auto& message : MessagesOf("TRACKS_LOCAL", ListBytes(2))) {
+    const auto schema = nlohmann::json::parse(foxglove::Schema(message.schema));
     EXPECT_EQ(schema["title"], message.schema);
     for (const auto& [key, value] : nlohmann::json::parse(message.json).items()) {
       EXPECT_TRUE(schema["properties"].contains(key)) << key;

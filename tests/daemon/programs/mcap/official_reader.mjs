@@ -55,7 +55,7 @@ if (process.argv.includes("--all")) {
   }
   if (result.topics["TRACKS_LOCAL"]?.last) {
     result.localTracks = result.topics["TRACKS_LOCAL"].last.tracks.length;
-    result.localCubes = result.topics["/scene/local"].last.entities.filter((e) => e.cubes.length === 1).length;
+    result.localCubes = result.topics["/v2vouch/local"].last.entities.filter((e) => e.cubes.length === 1).length;
   }
   for (const topic of Object.values(result.topics)) delete topic.last;
 }

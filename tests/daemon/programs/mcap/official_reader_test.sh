@@ -35,7 +35,7 @@ assert raw["topics"]["TRACKS_LOCAL"]["schemaEncoding"] == "lcmtype", raw
 lists = raw["topics"]["TRACKS_LOCAL"]["count"]
 assert lists > 200, lists
 assert view["topics"]["TRACKS_LOCAL"]["count"] == lists
-assert view["topics"]["/scene/local"] == {
+assert view["topics"]["/v2vouch/local"] == {
     "encoding": "json", "schema": "foxglove.SceneUpdate", "schemaEncoding": "jsonschema", "count": lists}
 assert view["topics"]["/gnss"]["schema"] == "foxglove.LocationFix"
 assert view["localTracks"] > 0 and view["localTracks"] == view["localCubes"], view

@@ -70,6 +70,34 @@ TEST(LogPlayer, PlaysPausesSeeksAndEnds) {
   EXPECT_EQ(player->state().now_us, kStart_us);
 }
 
+TEST(LogPlayer, ARecordersClockThatWasSetBackDoesNotFoldTheDrive) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "log_player_back_test.lcm").string();
+  std::string error;
+  {
+    const auto writer = LogWriter::Create(path, error);
+    ASSERT_NE(writer, nullptr) << error;
+    std::vector<std::uint8_t> bytes;
+    for (int i = 0; i <= 400; ++i) {
+      const std::int64_t t = kStart_us + i * 50'000;
+      wire::Encode(view::List(t, {}), bytes);
+      const std::int64_t set_back = i < 200 ? 0 : 3'600'000'000;  // After ten seconds, an hour.
+      writer->Write(FromMicros(t - set_back), "TRACKS_LOCAL", bytes);
+    }
+    ASSERT_TRUE(writer->Close(error)) << error;
+  }
+  view::Scene scene({}, {});
+  const auto player = LogPlayer::Open(
+      path, scene, [](double) { return true; }, error);
+  ASSERT_NE(player, nullptr) << error;
+  EXPECT_NEAR(static_cast<double>(player->state().end_us - kStart_us), 20e6, 0.1e6);
+  for (const std::int64_t second : {15, 5, 18, 11}) {
+    player->Control({false, 1.0, kStart_us + second * 1'000'000, ""});
+    EXPECT_NEAR(static_cast<double>(scene.list_utime() - kStart_us),
+                1e6 * static_cast<double>(second), 0.11e6);
+  }
+}
+
 TEST(LogPlayer, WhatIsNoLogIsRefusedWithTheReason) {
   view::Scene scene({}, {});
   std::string error;

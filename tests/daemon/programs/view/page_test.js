@@ -150,8 +150,79 @@ test("Foxglove's protocol: both names, playback control, all topics readable", a
   assert.strictEqual(answer.subarray(19).toString(), "ab");
   assert.ok(Math.abs(Number(answer.readBigUInt64LE(2) / 1000n) - log.begin - 2000000) < 300000);
   await until("topics", () => ["/v2vouch/local", "/v2vouch/senders", "/v2vouch/radar", "/v2vouch/truth", "/tf", "/ego/gnss",
-    "/v2vouch/log", "/v2vouch/status"].every((topic) => seen.has(topic)));
+    "/v2vouch/log", "/v2vouch/status", "/v2vouch/plot/local", "/v2vouch/plot/priority"].every((topic) => seen.has(topic)));
   socket.close();
+});
+
+// Overlaps of labels on a SceneView.
+const overlaps = (view) => view.placed.filter((a, i) => view.placed.some((b, k) => k > i &&
+  a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3])).length;
+// Where the vehicle nearest to the car is on the canvas.
+const nearest = (view) => view.frame.local.map((o) => [Math.hypot(o.x - view.frame.ego.x, o.y - view.frame.ego.y), view.at(o.x, o.y)])
+  .sort((a, b) => a[0] - b[0])[0][1];
+
+test("what lies under the pointer is told; labels do not cover each other", async () => {
+  const page = await openPage(log.page);
+  await page.evaluate(`window.overlaps = ${overlaps}; window.nearest = ${nearest}`);
+  for (const second of [1, 3, 4.5]) {
+    await control(page, false, 1, second);
+    await sleep(300);
+    for (const zoom of [1, 0.3, 2]) {
+      assert.strictEqual(await page.evaluate((z) => { view.scale = 6 * z; view.draw(); return overlaps(view); }, zoom), 0);
+    }
+  }
+  const [x, y] = await page.evaluate(() => {
+    view.scale = 4; view.draw();
+    const box = view.canvas.getBoundingClientRect(), [px, py] = nearest(view);
+    return [box.left + px, box.top + py];
+  });
+  await page.mouse.move(x, y);
+  const text = await page.$eval("#hover", (e) => e.hidden ? "" : e.textContent);
+  assert.ok(text.includes("vehicle") && /existence \d/.test(text), text);
+  await page.mouse.move(2, 2);
+  assert.ok(await page.$eval("#hover", (e) => e.hidden));
+  await page.close();
+});
+
+test("the report plays the drive: same numbers, hover, zoom; the file asks nobody for anything", async () => {
+  const folder = path.join(scratch, "report"), asked = [];
+  execFileSync(path.join(bin, "v2vouch-eval"), [log.lists, "--report", folder], { stdio: "ignore" });
+  const page = await browser.newPage();
+  page.on("request", (r) => { if (!/^(file|blob|data):/.test(r.url())) asked.push(r.url()); });
+  page.on("pageerror", (e) => faults.push(e.message));
+  await page.setViewport({ width: 1200, height: 900 });
+  await page.goto("file://" + folder + "/index.html?test");
+  await page.waitForSelector("#clip[data-ready]", { timeout: 20000 });
+  await page.evaluate(`window.overlaps = ${overlaps}; window.nearest = ${nearest}`);
+  const live = await openPage(log.page);
+  await control(live, false, 1, 4.5);
+  await sleep(400);
+  const frame = await frameOf(live);
+  const same = await page.evaluate((t) => { const f = window.__clip.data.frames.find((g) => g.t === t); return f && [f.local, f.priority]; }, frame.t);
+  if (same) assert.deepStrictEqual(same, [frame.local, frame.priority]);
+  await live.close();
+  const now = () => page.evaluate(() => window.__clip.now);
+  const before = await now();
+  await page.click("#clip .play");
+  await sleep(500);
+  await page.click("#clip .play");
+  assert.ok(await now() > before, "plays");
+  assert.strictEqual(await page.evaluate(() => { __clip.seek(__clip.begin + 4e6); return overlaps(__clip.view); }), 0);
+  await page.$eval("#clip", (e) => e.scrollIntoView());
+  const [x, y] = await page.evaluate(() => {
+    const v = __clip.view, box = v.canvas.getBoundingClientRect(), [px, py] = nearest(v);
+    return [box.left + px, box.top + py];
+  });
+  await page.mouse.move(x, y);
+  assert.match(await page.$eval("#clip .hover", (e) => e.hidden ? "" : e.textContent), /vehicle/);
+  await page.mouse.click(x, y);
+  assert.match(await page.$eval("#clip .details", (e) => e.textContent), /existence/);
+  const scale = await page.evaluate(() => __clip.view.scale);
+  await page.focus("#clip .scene");
+  await page.mouse.wheel({ deltaY: -300 });
+  await until("zoom", () => page.evaluate((s) => __clip.view.scale > s, scale), 3000);
+  assert.deepStrictEqual(asked, []);
+  await page.close();
 });
 
 test("wrong Host, Origin, token, sub-protocol, method and path are refused", async () => {
@@ -233,6 +304,8 @@ test("live: SIGSTOP of the daemon turns the page grey in half a second, SIGCONT 
   step("page ready");
   await until("live picture", () => page.evaluate(() => document.getElementById("state").textContent.startsWith("live")), 30000);
   assert.ok(!(await page.evaluate(() => document.body.classList.contains("is-late"))));
+  await until("latency on its strip", () => page.evaluate(() =>
+    (strips.strips.get("latency p99, input to list") || { points: [] }).points.some(([, us]) => us > 0)));
   // By the page's own clock: from the last list to grey.
   await page.evaluate(() => {
     new MutationObserver(() => {
@@ -257,6 +330,7 @@ async function main() {
   execFileSync(path.join(bin, "v2vouch-sim"), ["run", "smoke", "--seed", "1", "--out", inputs]);
   execFileSync(path.join(bin, "v2vouch-replay"), [inputs, "--out", lists]);
   log = await startView(lists);
+  log.lists = lists;
   browser = await puppeteer.launch({ executablePath: process.env.CHROMIUM || "/usr/bin/chromium", headless: true,
     args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-background-networking", "--no-first-run",
       "--disable-sync", "--user-data-dir=" + path.join(scratch, "browser")] });

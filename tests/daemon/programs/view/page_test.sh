@@ -11,7 +11,7 @@ command -v node >/dev/null || skip "no node"
 for package in puppeteer-core @foxglove/ws-protocol ws; do
   [[ -d "${modules}/${package}" ]] || skip "no npm package ${package} (scripts/install_npm)"
 done
-for program in v2vouchd v2vouch-sim v2vouch-replay v2vouch-view; do
+for program in v2vouchd v2vouch-sim v2vouch-replay v2vouch-eval v2vouch-view; do
   [[ -x "$1/${program}" ]] || skip "no ${program}"
 done
 "${root}/scripts/with_private_lcm" true 2>/dev/null || skip "no network namespace"

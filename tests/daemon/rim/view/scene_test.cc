@@ -7,11 +7,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "daemon/rim/view/json_text.h"
+#include "daemon/rim/json/json_text.h"
 #include "daemon/rim/view/page_frame.h"
+#include "daemon/rim/view/stored_config.h"
 #include "daemon/rim/wire/codec.h"
 #include "tests/daemon/rim/view/view_messages.h"
 #include "v2vouch/text_t.hpp"
+#include "v2vouch/warning_list_t.hpp"
 
 namespace v2vouch::view {
 namespace {
@@ -115,6 +117,68 @@ TEST(Scene, AVerdictIsToldInPlainWordsWithItsFigures) {
   const std::string& text = scene.VerdictsOf(9)->back().text;
   EXPECT_NE(text.find("moves away"), std::string::npos) << text;
   EXPECT_NE(text.find("drift_m 11.50"), std::string::npos) << text;
+}
+
+warning_list_t Warned(std::int64_t utime, std::int8_t level, std::int64_t track,
+                      std::int64_t local) {
+  warning_list_t list{};
+  list.utime = utime;
+  list.num_warnings = 1;
+  list.warnings.resize(1);
+  warning_t& warning = list.warnings[0];
+  warning.kind = warning_t::FCW;
+  warning.level = level;
+  warning.track_id = track;
+  warning.local_id = local;
+  warning.time_to_conflict_s = 1.94;
+  warning.x_body_m = 20.0;
+  warning.y_body_m = 1.0;
+  warning.conflict_x_body_m = warning.conflict_y_body_m = NAN;
+  return list;
+}
+
+TEST(Scene, AWarningIsToldWhenItBeginsAndWhenItGrows) {
+  Scene scene({}, {});
+  Take(scene, "WARNINGS", Warned(1, warning_t::INFO, 0, 77), 1'000'000);  // A note is no event.
+  Take(scene, "WARNINGS", Warned(2, warning_t::ADVISE, 0, 77), 2'000'000);
+  Take(scene, "WARNINGS", Warned(3, warning_t::ADVISE, 0, 77), 3'000'000);
+  Take(scene, "WARNINGS", Warned(4, warning_t::URGENT, 12345678, 77), 4'000'000);
+  Take(scene, "WARNINGS", Warned(5, warning_t::WARN, 0, 77), 5'000'000);  // Weaker again.
+  Take(scene, "WARNINGS", warning_list_t{}, 6'000'000);
+  Take(scene, "WARNINGS", Warned(7, warning_t::WARN, 9, 0), 7'000'000);
+  EXPECT_THAT(Kinds(scene), ElementsAre("warned", "warned", "warned"));
+  const auto& events = scene.events().events();
+  EXPECT_EQ(events[0].text, "caution: collision ahead with vehicle 77, contact in 1.9 s");
+  EXPECT_EQ(events[0].local_id, 77);
+  EXPECT_EQ(events[1].at, 4'000'000);
+  EXPECT_EQ(events[1].track_id, 12345678);
+  EXPECT_THAT(events[1].text, ::testing::StartsWith("urgent: collision ahead with vehicle 45678"));
+  EXPECT_THAT(events[2].text, ::testing::EndsWith("hidden, known by V2V"));
+}
+
+TEST(Scene, AFrameHoldsTheWarningsWhereTheirVehiclesAre) {
+  Scene scene({}, {});
+  track_list_t list = List(1'000'000, {Track(77, 120, 1)});
+  list.ego_x_odom_m = 100.0;
+  Take(scene, "TRACKS_LOCAL", list);
+  Take(scene, "WARNINGS", Warned(1'000'000, warning_t::WARN, 0, 77));
+  const json warnings = json::parse(PageFrame(scene))["warnings"];
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0]["local"], "77");
+  EXPECT_EQ(warnings[0]["x"], 120.0);
+  EXPECT_TRUE(warnings[0]["cx"].is_null());
+  list.utime = 2'000'000;  // The warnings stopped: nothing old is shown.
+  Take(scene, "TRACKS_LOCAL", list);
+  EXPECT_TRUE(json::parse(PageFrame(scene))["warnings"].empty());
+}
+
+TEST(StoredConfig, TakesWhatItKnowsOfAnotherVersionsText) {
+  const StoredConfig config = ReadStoredConfig(
+      "vehicle: {width_m: 2.5, new_key: 1}\nlcm: {channels: {tracks_local: L, other: x}}\nnew: "
+      "{}\n");
+  EXPECT_EQ(config.vehicle.width_m, 2.5);
+  EXPECT_EQ(config.channels.tracks_local, "L");
+  EXPECT_EQ(ReadStoredConfig("[").channels.tracks_local, "TRACKS_LOCAL");
 }
 
 TEST(Scene, MemoryIsBoundedUnderAFloodOfVerdicts) {

@@ -38,7 +38,8 @@ class Strips {
       g.textAlign = "left";
       g.fillText(name, 0, 10);
       g.textAlign = "right";
-      g.fillText(last ? last[1].toFixed(last[1] < 10 ? 1 : 0) + " " + unit + "  (most " + most.toFixed(most < 10 ? 1 : 0) + ")" : "none", w, 10);
+      const text = (v) => Number.isInteger(v) || v >= 10 ? v.toFixed(0) : v.toFixed(1);
+      g.fillText(last ? text(last[1]) + " " + unit + "  (most " + text(Math.max(...points.map((p) => p[1]))) + ")" : "none", w, 10);
       g.strokeStyle = style.getPropertyValue("--line");
       g.beginPath(); g.moveTo(0, h - 3); g.lineTo(w, h - 3); g.stroke();
       if (!last) continue;
@@ -50,6 +51,10 @@ class Strips {
         if (i === 0) g.moveTo(x, y); else g.lineTo(x, y);
       });
       g.stroke();
+      g.fillStyle = style.getPropertyValue("--local");
+      g.beginPath();
+      g.arc(w - 2, h - 3 - (last[1] / most) * (h - 20), 2, 0, 2 * Math.PI);
+      g.fill();
     }
   }
 }

@@ -13,6 +13,8 @@ class SceneView {
     this.centre = null;       // Of the view, odometry frame; null: follows the ego.
     this.headingUp = true;
     this.chosen = null;       // {kind, id}
+    this.hovered = null;
+    this.labels = [];
     this.layers = { fields: true, local: true, priority: true, senders: true, radar: true, camera: true,
       truth: true, map: true };
     this.restyle();
@@ -37,6 +39,8 @@ class SceneView {
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.fillStyle = this.colours.paper;
     g.fillRect(0, 0, width, height);
+    this.labels = [];
+    this.rings = [];
     if (!this.frame || !this.frame.ego) return;
     this.aim(width, height);
     if (this.layers.map) this.drawMap();
@@ -50,6 +54,9 @@ class SceneView {
     if (this.layers.local) for (const track of this.frame.local) this.drawLocal(track);
     if (this.layers.senders) for (const sender of this.frame.senders) this.drawSender(sender);
     if (this.layers.priority) for (const track of this.frame.priority) this.drawPriority(track);
+    this.drawWarnings();
+    this.drawHovered();
+    this.placeLabels(width, height);
   }
 
   // --- where things lie on the canvas
@@ -125,16 +132,52 @@ class SceneView {
     this.g.ellipse(px, py, Math.min(a * this.scale, 4000), Math.min(b * this.scale, 4000), -angle, 0, 2 * Math.PI);
     return true;
   }
-  label(o, text, colour, line) {
-    const g = this.g, [x, y] = this.at(o.x, o.y);
-    const off = Math.max(10, this.scale * (o.wid || 1.8) * 0.5 + 6);
+  /** Words beside a vehicle; all are put in place at the end.
+   * @param weight 3: shown in any case @param clear pixels round the vehicle to stay out of */
+  label(o, lines, colour, weight, clear) { this.labels.push({ o, lines, colour, weight, clear }); }
+  /** No label covers another; those that find no free place are left out, the least first. */
+  placeLabels(width, height) {
+    const g = this.g, row = 14, taken = [], vehicles = [];
+    const overlap = (a, b) => Math.max(0, Math.min(a[2], b[2]) - Math.max(a[0], b[0])) * Math.max(0, Math.min(a[3], b[3]) - Math.max(a[1], b[1]));
+    for (const list of [this.frame.local, this.frame.priority]) {
+      for (const o of list) {
+        const [x, y] = this.at(o.x, o.y), r = this.scale * (o.wid || 1.8) * 0.6;
+        vehicles.push([x - r, y - r, x + r, y + r]);
+      }
+    }
     g.font = "12px system-ui, sans-serif";
     g.textAlign = "left";
     g.lineWidth = 3;
     g.strokeStyle = this.colours.paper;
-    g.fillStyle = colour;
-    g.strokeText(text, x + off, y + 4 + 14 * (line || 0));
-    g.fillText(text, x + off, y + 4 + 14 * (line || 0));
+    for (const { o, lines, colour, weight, clear } of this.labels.sort((a, b) => b.weight - a.weight)) {
+      const [x, y] = this.at(o.x, o.y);
+      const off = clear || Math.max(14, this.scale * (o.wid || 1.8) * 0.5 + 8), up = clear || Math.max(off, this.scale * (o.len || 4.2) * 0.5 + 6);
+      const w = Math.max(...lines.map((line) => g.measureText(line).width)), h = row * lines.length;
+      if (x < -w || y < -h || x > width + w || y > height + h) continue;
+      let best = null, least = Infinity;
+      for (const [left, top] of [[x + off, y - h / 2], [x - off - w, y - h / 2], [x - w / 2, y - up - h], [x - w / 2, y + up]]) {
+        const area = [left, top, left + w, top + h];
+        const covered = 4 * taken.reduce((sum, other) => sum + overlap(area, other), 0) +
+          vehicles.reduce((sum, other) => sum + overlap(area, other), 0) +
+          (w * h - overlap(area, [0, 0, width, height]));
+        if (covered < least - 1) { least = covered; best = area; }
+      }
+      if (weight < 3 && taken.some((other) => overlap(best, other) > 0)) continue;
+      taken.push(best);
+      g.fillStyle = colour;
+      lines.forEach((line, i) => {
+        g.strokeText(line, best[0], best[1] + 11 + row * i);
+        g.fillText(line, best[0], best[1] + 11 + row * i);
+      });
+    }
+    g.fillStyle = this.colours.soft;
+    for (const [text, left, top] of this.rings) {
+      const area = [left, top, left + g.measureText(text).width, top + row];
+      if (taken.some((other) => overlap(area, other) > 0)) continue;
+      taken.push(area);
+      g.fillText(text, left, top + 11);
+    }
+    this.placed = taken;
   }
 
   // --- layers
@@ -182,15 +225,13 @@ class SceneView {
   drawGrid(width, height) {
     const g = this.g, ego = this.frame.ego, [x, y] = this.at(ego.x, ego.y);
     g.strokeStyle = this.colours.line;
-    g.fillStyle = this.colours.soft;
     g.lineWidth = 1;
-    g.font = "11px system-ui, sans-serif";
     const step = [5, 10, 20, 50, 100].find((s) => s * this.scale > 70) || 200;
     for (let r = step; r * this.scale < Math.hypot(width, height); r += step) {
       g.beginPath();
       g.arc(x, y, r * this.scale, 0, 2 * Math.PI);
       g.stroke();
-      g.fillText(r + " m", x + 3, y - r * this.scale - 2);
+      this.rings.push([r + " m", x + 3, y - r * this.scale - 14]);
     }
   }
   drawTrail() {
@@ -316,8 +357,9 @@ class SceneView {
       g.lineWidth = 4;
       g.stroke();
     }
-    this.label(track, Words.short(track.id), colour);
-    if (hidden) this.label(track, "hidden, " + Words.number(track.budget, 1, "s left"), colour, 1);
+    const lines = [Words.short(track.id)];
+    if (hidden) lines.push("hidden, " + Words.number(track.budget, 1, "s left"));
+    this.label(track, lines, colour, this.isChosen("priority", track.id) ? 3 : hidden ? 2 : 1, r + (hidden ? 11 : 5));
   }
   colourOfTrust(trust) {
     return [this.colours.sender, this.colours.sender, this.colours.sender, this.colours.priority,
@@ -352,7 +394,52 @@ class SceneView {
     const words = [];
     if (sender.liar) words.push("liar");
     if (sender.trust >= 5) words.push(Words.trust[sender.trust]);
-    if (words.length) this.label(sender, words.join(": "), this.colours.bad);
+    if (words.length) this.label(sender, [words.join(": ")], this.colours.bad, 1.5);
+  }
+
+  /** A triangle at each vehicle warned of, where a contact is foreseen a cross and a line to it. */
+  drawWarnings() {
+    const g = this.g;
+    for (const warning of this.frame.warnings || []) {
+      if (warning.x === null || warning.y === null) continue;
+      const strong = warning.level === 2 || warning.level === 3;
+      const colour = strong ? this.colours.bad : this.colours.hidden;
+      g.strokeStyle = g.fillStyle = colour;
+      if (warning.cx !== null && warning.cy !== null) {
+        this.path([warning.x, warning.y, warning.cx, warning.cy]);
+        g.lineWidth = 1.5;
+        g.setLineDash([2, 3]);
+        g.stroke();
+        g.setLineDash([]);
+        const [x, y] = this.at(warning.cx, warning.cy);
+        g.beginPath();
+        g.moveTo(x - 5, y); g.lineTo(x + 5, y); g.moveTo(x, y - 5); g.lineTo(x, y + 5);
+        g.lineWidth = 2.5;
+        g.stroke();
+      }
+      const [x, y] = this.at(warning.x, warning.y);
+      g.beginPath();
+      g.moveTo(x, y - 9); g.lineTo(x + 9, y + 7); g.lineTo(x - 9, y + 7);
+      g.closePath();
+      g.fill();
+      g.fillStyle = this.colours.paper;
+      g.fillRect(x - 1, y - 4, 2, 6);
+      g.fillRect(x - 1, y + 3.5, 2, 2);
+      this.label(warning, [Words.warning(warning)], colour, strong ? 3 : 1.8);
+    }
+  }
+  drawHovered() {
+    if (!this.hovered) return;
+    const { kind, id } = this.hovered;
+    const list = { local: this.frame.local, priority: this.frame.priority, sender: this.frame.senders }[kind];
+    const o = list.find((item) => item.id === id);
+    if (!o) return;
+    const [x, y] = this.at(o.x, o.y), g = this.g;
+    g.beginPath();
+    g.arc(x, y, Math.max(12, this.scale * (o.len || 4.2) / 2 + 3), 0, 2 * Math.PI);
+    g.strokeStyle = this.colours.ink;
+    g.lineWidth = 1;
+    g.stroke();
   }
 
   /** What lies under a pixel: {kind, id}, or null. Small things first. */

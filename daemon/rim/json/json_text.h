@@ -2,15 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
-namespace v2vouch::view {
+namespace v2vouch {
 
 /// Writes JSON from left to right into one string. Numbers have a fixed number of decimals,
-/// trailing zeros left out, and what is not finite is null. Texts may be hostile: what is no UTF-8
-/// becomes
-/// "?", so that the result is always valid.
+/// trailing zeros left out, and what is not finite is null. Texts may be hostile: each odd byte
+/// becomes U+FFFD, so that the result is always valid.
 class JsonText {
  public:
   JsonText& Open(char bracket);  ///< '{' or '['.
@@ -38,10 +38,11 @@ class JsonText {
   bool needs_comma_ = false;
 };
 
-/// Bytes as base64, with padding.
-std::string Base64(const std::uint8_t* bytes, std::size_t size);
+/// Building blocks of it, for other JSON written by hand.
+void AppendJsonString(std::string& json, std::string_view text);
+void AppendJsonNumber(std::string& json, double value);  ///< Shortest exact form, or null.
+void AppendBase64(std::string& json, std::span<const std::uint8_t> bytes);
+std::string Base64(std::span<const std::uint8_t> bytes);  ///< RFC 4648, with padding.
+bool IsUtf8(std::string_view text);
 
-/// A sender's TemporaryID as eight hex digits.
-std::string SenderName(std::uint32_t sender);
-
-}  // namespace v2vouch::view
+}  // namespace v2vouch

@@ -3,9 +3,9 @@
 // github.com/foxglove/foxglove-sdk, schemas/jsonschema (MIT).
 #include <map>
 
-#include "daemon/rim/view/foxglove_messages.h"
+#include "daemon/rim/foxglove/messages.h"
 
-namespace v2vouch::view {
+namespace v2vouch::foxglove {
 namespace {
 
 using Fields = std::initializer_list<std::pair<const char*, std::string>>;
@@ -105,16 +105,36 @@ std::map<std::string, std::string, std::less<>> MakeSchemas() {
                                    {"frame_id", text},
                                    {"data", R"({"type":"string","contentEncoding":"base64"})"},
                                    {"format", text}});
+  add("foxglove.RawImage", {{"timestamp", time},
+                            {"frame_id", text},
+                            {"width", whole},
+                            {"height", whole},
+                            {"encoding", text},
+                            {"step", whole},
+                            {"data", R"({"type":"string","contentEncoding":"base64"})"}});
+  add("v2vouch.FlatTracks", {{"timestamp", time},
+                             {"count", whole},
+                             {"nearest_m", number},
+                             {"id", List(number)},
+                             {"x_m", List(number)},
+                             {"y_m", List(number)},
+                             {"speed_mps", List(number)},
+                             {"yaw_rad", List(number)},
+                             {"existence", List(number)},
+                             {"sigma_m", List(number)},
+                             {"own_age_s", List(number)},
+                             {"budget_s", List(number)},
+                             {"trust_state", List(number)}});
   return schemas;
 }
 
 }  // namespace
 
-std::string_view FoxgloveSchema(std::string_view name) {
+std::string_view Schema(std::string_view name) {
   static const auto schemas = MakeSchemas();
   const auto found = schemas.find(name);
   return found == schemas.end() ? std::string_view(R"({"type":"object"})")
                                 : std::string_view(found->second);
 }
 
-}  // namespace v2vouch::view
+}  // namespace v2vouch::foxglove

@@ -13,7 +13,7 @@ struct PageFile {
   std::string_view content;
 };
 
-/// All of page/, put in by scripts/cmake/V2vouchEmbed.cmake.
+/// All files of this folder, put in by scripts/cmake/V2vouchEmbed.cmake.
 std::span<const PageFile> PageFiles();
 
 }  // namespace v2vouch

@@ -15,6 +15,12 @@ const Words = {
     "accused: not believed, reported as misbehaviour",
   ],
   sources: ["radar", "camera", "objects", "V2V"],
+  warnings: ["", "collision ahead", "hard braking ahead", "crossing traffic", "oncoming while turning left", "beside", "lane change"],
+  levels: ["note", "caution", "WARNING", "URGENT", "vehicle lost"],
+  warning(w) {
+    const time = Number.isFinite(w.ttc) && w.level < 4 ? ", " + w.ttc.toFixed(1) + " s" : "";
+    return (this.levels[w.level] || "") + ": " + (this.warnings[w.kind] || "kind " + w.kind) + time;
+  },
   sector: ["watched", "degraded", "blind"],
   number(value, decimals, unit) {
     return value === null || value === undefined ? "none" : value.toFixed(decimals) + (unit ? " " + unit : "");
