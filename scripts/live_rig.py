@@ -74,7 +74,10 @@ def play(log, url, speed, loop_s, until_s, flood, pauses):
             for name, body in names:
                 stamp = struct.unpack_from(">q", body, 8)[0] + shift
                 body = body[:8] + struct.pack(">q", stamp) + body[16:]
-                out.sendto(struct.pack(">II", SHORT, seq & 0xFFFFFFFF) + name.encode() + b"\0" + body, to)
+                try:
+                    out.sendto(struct.pack(">II", SHORT, seq & 0xFFFFFFFF) + name.encode() + b"\0" + body, to)
+                except OSError:
+                    pass  # No route for a while.
                 seq += 1
             sent += 1
         lap += 1

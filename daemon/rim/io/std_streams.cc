@@ -2,6 +2,7 @@
 #include "daemon/rim/io/std_streams.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -30,13 +31,19 @@ void CheckStandardOutput(int status, void* program) {
     const int copy = dup(STDOUT_FILENO);
     is_good = copy < 0 || close(copy) == 0;
   }
-  if (is_good) return;
+  if (is_good || IsReaderGone()) return;
   std::fprintf(stderr, "%s: standard output: %s\n", static_cast<const char*>(program),
                errno != 0 ? std::strerror(errno) : "could not be written");
   if (status == 0) _exit(1);
 }
 
 }  // namespace
+
+bool IsReaderGone() {
+  // Of a pipe whose other end is closed the kernel says POLLERR; of a socket POLLHUP.
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP)) != 0;
+}
 
 void GuardStandardStreams(const char* program) {
   // The wrong way round on purpose: writing fails with EBADF and is noticed.

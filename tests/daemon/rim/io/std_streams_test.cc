@@ -51,14 +51,37 @@ TEST(StandardStreams, ResultsThatStandardOutputDoesNotTakeAreAFailure) {
   EXPECT_EQ(print_into([] { PointAt(STDOUT_FILENO, "/dev/full"); }, 0), 1);
   EXPECT_EQ(print_into([] { close(STDOUT_FILENO); }, 0), 1);
   EXPECT_EQ(print_into([] { PointAt(STDOUT_FILENO, "/dev/full"); }, 2), 2);
-  const auto closed_pipe = [] {
-    int ends[2];
-    if (pipe(ends) != 0) std::abort();
-    dup2(ends[1], STDOUT_FILENO);
-    close(ends[0]);
-    close(ends[1]);
-  };
-  EXPECT_EQ(print_into(closed_pipe, 0), 1);
+}
+
+// `| head`, a pager that was closed: whoever read has what it wanted.
+TEST(StandardStreams, AReaderThatGoesAwayIsNoFailureAndNoWord) {
+  for (const int code : {0, 1, 2}) {
+    EXPECT_EQ(ExitCodeOf([code] {
+                int ends[2];
+                int words[2];
+                if (pipe(ends) != 0 || pipe(words) != 0) std::abort();
+                dup2(ends[1], STDOUT_FILENO);
+                close(ends[1]);
+                const pid_t printing = fork();
+                if (printing == 0) {
+                  GuardStandardStreams("test");
+                  dup2(words[1], STDERR_FILENO);
+                  if (IsReaderGone()) std::exit(7);
+                  close(ends[0]);
+                  if (!IsReaderGone()) std::exit(8);
+                  for (int i = 0; i < 10000; ++i) std::cout << "figures\n";
+                  std::exit(code);
+                }
+                close(ends[0]);
+                close(words[1]);
+                int status = 0;
+                waitpid(printing, &status, 0);
+                char said = 0;
+                if (read(words[0], &said, 1) != 0) return 9;
+                return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+              }),
+              code);
+  }
 }
 
 TEST(StandardStreams, AProgramThatPrintsNothingDoesNotMindAClosedOutput) {
