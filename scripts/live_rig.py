@@ -187,8 +187,11 @@ class ListWatch(threading.Thread):
             return
         self.tracks += len(message.tracks)
         for track in message.tracks:
-            figures = [track.x_body_m, track.y_body_m, track.yaw_body_rad, track.speed_mps, track.existence,
-                       *track.covariance_body]
-            if not all(math.isfinite(f) for f in figures) or not 0 <= track.existence <= 1 or any(
-                    track.covariance_body[7 * i] < 0 for i in range(6)):
-                self.faults.append(f"{channel}: track {track.id} at {utime} has impossible figures")
+            figures = {"x": track.x_body_m, "y": track.y_body_m, "yaw": track.yaw_body_rad, "speed": track.speed_mps,
+                       "existence": track.existence}
+            figures.update((f"covariance {i}", figure) for i, figure in enumerate(track.covariance_body))
+            wrong = {name: figure for name, figure in figures.items() if not math.isfinite(figure)}
+            wrong.update((f"variance {i}", track.covariance_body[7 * i]) for i in range(6)
+                         if track.covariance_body[7 * i] < 0)
+            if wrong or not 0 <= track.existence <= 1:
+                self.faults.append(f"{channel}: track {track.id} at {utime}: {wrong or track.existence}")
