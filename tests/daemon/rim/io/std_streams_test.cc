@@ -62,17 +62,16 @@ TEST(StandardStreams, AReaderThatGoesAwayIsNoFailureAndNoWord) {
                 if (pipe(ends) != 0 || pipe(words) != 0) std::abort();
                 dup2(ends[1], STDOUT_FILENO);
                 close(ends[1]);
+                if (IsReaderGone()) return 7;
+                close(ends[0]);
+                if (!IsReaderGone()) return 8;
                 const pid_t printing = fork();
                 if (printing == 0) {
                   GuardStandardStreams("test");
                   dup2(words[1], STDERR_FILENO);
-                  if (IsReaderGone()) std::exit(7);
-                  close(ends[0]);
-                  if (!IsReaderGone()) std::exit(8);
                   for (int i = 0; i < 10000; ++i) std::cout << "figures\n";
                   std::exit(code);
                 }
-                close(ends[0]);
                 close(words[1]);
                 int status = 0;
                 waitpid(printing, &status, 0);
