@@ -106,6 +106,19 @@ class Program:
         except (FileNotFoundError, ProcessLookupError, KeyError):
             pass
 
+    def said(self):
+        with open(os.path.join(self.folder, self.name + ".txt"), encoding="utf-8", errors="replace") as file:
+            return file.read()
+
+    def says(self, word, most_s=30.0):
+        """Waits for that word of a program that has just been started. False: it ended, or never said it."""
+        begin = time.monotonic()
+        while word not in self.said():
+            if not self.is_alive() or time.monotonic() - begin > most_s:
+                return word in self.said()
+            time.sleep(0.02)
+        return True
+
     def is_alive(self):
         return self.process is not None and self.process.poll() is None
 

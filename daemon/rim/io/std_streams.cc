@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 
 namespace v2vouch {
 namespace {
@@ -37,6 +38,25 @@ void CheckStandardOutput(int status, void* program) {
   if (status == 0) _exit(1);
 }
 
+const char* program_name = "";
+
+// Mostly: the system gives no memory, or no thread. abort() would be a crash without a word.
+void TellAndEnd() {
+  if (const auto thrown = std::current_exception()) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s: cannot go on: %s\n", program_name, error.what());
+    } catch (...) {
+      std::fprintf(stderr, "%s: cannot go on: an exception of unknown kind\n", program_name);
+    }
+  } else {
+    std::abort();  // A mistake of our own, such as a thread that was not joined.
+  }
+  poll(nullptr, 0, 150);  // Where a thread passes stderr on, it gets the time to.
+  _exit(1);
+}
+
 }  // namespace
 
 bool IsReaderGone() {
@@ -51,6 +71,8 @@ void GuardStandardStreams(const char* program) {
   OpenIfClosed(STDOUT_FILENO, O_RDONLY);
   OpenIfClosed(STDERR_FILENO, O_RDONLY);
   signal(SIGPIPE, SIG_IGN);
+  program_name = program;
+  std::set_terminate(TellAndEnd);
   on_exit(CheckStandardOutput, const_cast<char*>(program));
 }
 

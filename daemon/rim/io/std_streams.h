@@ -11,6 +11,8 @@ namespace v2vouch {
 ///   program's own exit code. What prints much asks IsReaderGone() and ends early.
 /// - At exit: results that standard output did not take otherwise (full device, closed) are told on
 ///   stderr, and exit code 0 becomes 1.
+/// - An exception that nobody caught (no memory, no thread) is told on stderr: exit code 1, no
+///   crash.
 ///
 /// @param program its name, for that message; a string literal.
 void GuardStandardStreams(const char* program);

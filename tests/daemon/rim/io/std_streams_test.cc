@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <functional>
 #include <iostream>
+#include <new>
+#include <string>
 #include <thread>
 
 #include "daemon/rim/io/stop_signal.h"
@@ -102,6 +104,24 @@ TEST(StandardStreams, NoFileGetsTheNumberOfAClosedStream) {
               return open("/dev/null", O_WRONLY) > STDERR_FILENO ? 0 : 3;
             }),
             0);
+}
+
+// A host without memory or threads: said, and an ordinary exit code, whichever thread it is.
+TEST(StandardStreams, AnExceptionThatNobodyCaughtIsToldAndExitCode1) {
+  int words[2];
+  ASSERT_EQ(pipe(words), 0);
+  EXPECT_EQ(ExitCodeOf([&] {
+              GuardStandardStreams("test");
+              dup2(words[1], STDERR_FILENO);
+              std::thread([] { throw std::bad_alloc(); }).join();
+              return 0;
+            }),
+            1);
+  close(words[1]);
+  char said[200] = {};
+  EXPECT_GT(read(words[0], said, sizeof(said) - 1), 0);
+  EXPECT_EQ(std::string(said).rfind("test: cannot go on: ", 0), 0u) << said;
+  close(words[0]);
 }
 
 TEST(StopSignal, EndsAProgramThatDoesNotLookForIt) {
