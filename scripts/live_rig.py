@@ -2,6 +2,7 @@
 """What scripts/soak and scripts/chaos share: a drive played over LCM as fast as wanted, a radio flood, programs
 with their memory and descriptors, and a listener that checks every list."""
 
+import ctypes
 import math
 import os
 import random
@@ -83,16 +84,25 @@ def play(log, url, speed, loop_s, until_s, flood, pauses):
         lap += 1
 
 
+def end_with_parent():
+    """In a child before exec: killed by the kernel when its parent ends, whatever ends that."""
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+
+
 class Program:
-    def __init__(self, name, *words, folder, env=None, before=None):
-        self.name, self.words, self.folder, self.env, self.before = name, words, folder, env, before
+    def __init__(self, name, *words, folder, before=None):
+        self.name, self.words, self.folder, self.before = name, words, folder, before
         self.samples = []  # (wall s of this life, resident kB, descriptors, threads)
         self.lives, self.process = [], None
 
+    def prepare(self):
+        end_with_parent()
+        if self.before:
+            self.before()
+
     def start(self):
         self.log = open(os.path.join(self.folder, self.name + ".txt"), "ab")
-        self.process = subprocess.Popen(self.words, stdout=self.log, stderr=self.log, env=self.env,
-                                        preexec_fn=self.before)
+        self.process = subprocess.Popen(self.words, stdout=self.log, stderr=self.log, preexec_fn=self.prepare)
         self.born, self.samples = time.monotonic(), []
 
     def sample(self):
