@@ -28,7 +28,8 @@ std::vector<std::filesystem::path> YamlFiles(const std::string& shipped, std::st
 }
 
 std::string Find(const std::string& name, const std::filesystem::path& shipped,
-                 const std::string& folder, const char* what, const std::vector<std::string>& known, std::string& problem) {
+                 const std::string& folder, const char* what, const std::vector<std::string>& known,
+                 std::string& problem) {
   std::error_code ignored;
   if (std::filesystem::exists(name, ignored)) return name;
   if (std::filesystem::is_regular_file(shipped, ignored)) return shipped.string();

@@ -116,9 +116,8 @@ void Recorder::Finish() {
 void Recorder::CountLost() {
   std::error_code error;
   const auto size = fs::file_size(open_, error);
-  const auto lost = std::ranges::count_if(waiting_, [&](std::int64_t end) {
-    return error || end > static_cast<std::int64_t>(size);
-  });
+  const auto lost = std::ranges::count_if(
+      waiting_, [&](std::int64_t end) { return error || end > static_cast<std::int64_t>(size); });
   written_ -= lost;
   missed_ += lost;
 }

@@ -24,8 +24,10 @@ std::string WhyNotShipped(const std::string& name) {
   std::string text = "no shipped files: there is no folder " + folder.string();
   text += is_set ? ", which V2VOUCH_SHARE names"
                  : ". Programs look for share/v2vouch beside the folder they lie in";
-  return text + ". Copy that folder along with the programs, install them (cmake --install, or the "
-                "package), or let V2VOUCH_SHARE name the folder that holds " + name;
+  return text +
+         ". Copy that folder along with the programs, install them (cmake --install, or the "
+         "package), or let V2VOUCH_SHARE name the folder that holds " +
+         name;
 }
 
 }  // namespace v2vouch
