@@ -139,7 +139,10 @@ class Assessor {
                                            0.5 * body_.length_m - body_target_.size.length_m);
     Figures figures = FiguresOf(conflict);
     figures.required_decel_mps2 = closing * closing / (2.0 * gap_m) + lead_brakes;
-    figures.warn_before_s = config_.driver_reaction_s + closing / (2.0 * config_.driver_decel_mps2);
+    const double needed_s = config_.driver_reaction_s + closing / (2.0 * config_.driver_decel_mps2);
+    const double usual_s = closing / (2.0 * config_.usual_decel_mps2);
+    figures.warn_before_s =
+        std::max(needed_s, std::min(needed_s + config_.warn_margin_s, usual_s));
     figures.urgent_before_s = config_.planner_reaction_s +
                               closing / (2.0 * config_.planner_decel_mps2) +
                               config_.urgent_margin_s;

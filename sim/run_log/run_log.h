@@ -137,7 +137,7 @@ std::string WhyNotJudged(const RunLog& log);
 
 enum class ReadScope {
   kAll,    ///< Everything but the messages' truths and verdicts.
-  kSpoof,  ///< What spoof scoring needs: those too, and PRIORITY as the only list.
+  kSpoof,  ///< What spoof scoring needs: those too.
 };
 
 /// Reads a recorded run: the three lists, TRUTH, SIM_SCENARIO, and the arrival times of own sensor

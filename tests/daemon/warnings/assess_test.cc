@@ -19,7 +19,7 @@ std::optional<Warning> Only(const Scene& scene) {
 }
 
 TEST(Assess, StandingCarAheadRisesFromAdviseToUrgent) {
-  // 15 m/s; bumper 3.75 m, rear at x - 2 m. WARN before 1.2 + 15/8 = 3.08 s, URGENT 1.44 s.
+  // 15 m/s; bumper 3.75 m, rear at x - 2 m. WARN before 15/4.4 = 3.41 s, URGENT 1.44 s.
   EXPECT_EQ(Only(SceneOf(Driving(15.0), {Car(1, 75.0, 0, 0, 0)}))->level, Level::kAdvise);
   EXPECT_EQ(Only(SceneOf(Driving(15.0), {Car(1, 48.0, 0, 0, 0)}))->level, Level::kWarn);
   const auto urgent = Only(SceneOf(Driving(15.0), {Car(1, 23.0, 0, 0, 0)}));
@@ -28,6 +28,18 @@ TEST(Assess, StandingCarAheadRisesFromAdviseToUrgent) {
   EXPECT_NEAR(urgent->figures.required_decel_mps2, 225.0 / 2 / 17.25, 0.1);
   EXPECT_GT(urgent->figures.conflict_probability, 0.9);
   EXPECT_NEAR(urgent->figures.own_sensor_age_s, 0.0, 1e-9);
+}
+
+TEST(Assess, StandingCarIsWarnedOfWithAMarginOnlyWhereUsualBrakingWouldHaveBegun) {
+  // 20 m/s: needed 1.2 + 20/8 = 3.7 s, usual braking from 20/4.4 = 4.5 s on: margin 0.5 s.
+  EXPECT_NEAR(Only(SceneOf(Driving(20.0), {Car(1, 90.0, 0, 0, 0)}))->figures.warn_before_s, 4.2,
+              1e-9);
+  // 14 m/s: needed 2.95 s, usual 3.18 s.
+  EXPECT_NEAR(Only(SceneOf(Driving(14.0), {Car(1, 50.0, 0, 0, 0)}))->figures.warn_before_s,
+              14.0 / 4.4, 1e-9);
+  // 8 m/s: needed 2.2 s; usual braking begins after that: none.
+  EXPECT_NEAR(Only(SceneOf(Driving(8.0), {Car(1, 24.0, 0, 0, 0)}))->figures.warn_before_s, 2.2,
+              1e-9);
 }
 
 TEST(Assess, EgoThatBrakesEnoughIsNotWarned) {
