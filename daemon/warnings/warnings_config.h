@@ -12,8 +12,8 @@ struct WarningsConfig {
   double advise_probability = 0.2;  ///< ADVISE from this probability of contact on.
   double warn_probability = 0.5;
   double urgent_probability = 0.9;
-  double driver_reaction_s = 1.2;   ///< WARN: reaction and braking of a driver ...
-  double driver_decel_mps2 = 4.0;   ///< ... and this much before he would have to.
+  double driver_reaction_s = 1.2;  ///< WARN: reaction and braking of a driver ...
+  double driver_decel_mps2 = 4.0;  ///< ... and this much before he would have to.
   /// Of crossing and oncoming vehicles. Of those ahead only as far as a driver who brakes with
   /// `usual_decel_mps2`, without any reaction, would have begun: usual stops are not warned of.
   double warn_margin_s = 0.5;

@@ -20,8 +20,8 @@ struct RunRecord {
   /// What the warnings of the run came to, and the JSON of v2vouch-eval it was read from.
   std::optional<evaluation::WarnTally> warnings;
   std::string warnings_json;
-  std::string local_digest;                   ///< SHA-256 of LOCAL, from the replay.
-  double step_p99_us = 0.0;                   ///< Of the daemon's core, per input.
+  std::string local_digest;  ///< SHA-256 of LOCAL, from the replay.
+  double step_p99_us = 0.0;  ///< Of the daemon's core, per input.
   double step_max_us = 0.0;
 };
 

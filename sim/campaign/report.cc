@@ -150,8 +150,8 @@ std::string WarningTable(const Summary& summary) {
     for (const auto* t : {&w.v2v, &w.local, &w.ours}) {
       rows += Cell(std::to_string(t->planner_needless));
     }
-    rows += found(w.v2v) + found(w.local) + found(w.ours) +
-            Cell(std::to_string(w.contacts_unwarned));
+    rows +=
+        found(w.v2v) + found(w.local) + found(w.ours) + Cell(std::to_string(w.contacts_unwarned));
     for (const auto* t : {&w.v2v, &w.local, &w.ours}) {
       rows += Cell(std::to_string(t->planner_contacts));
     }

@@ -145,7 +145,8 @@ std::string LieBars(const std::vector<const Group*>& groups) {
     svg.Text(at, height - 26.0, std::to_string(20 * i) + " %",
              "class=\"tick\" font-size=\"12\" text-anchor=\"middle\"");
   }
-  svg.Text(kLeft, height - 7.0, "share of the attacked runs in which a lie causes an URGENT warning",
+  svg.Text(kLeft, height - 7.0,
+           "share of the attacked runs in which a lie causes an URGENT warning",
            "class=\"tick\" font-size=\"12\"");
   double y = kTop;
   for (const Group* group : shown) {

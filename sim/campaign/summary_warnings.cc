@@ -68,9 +68,9 @@ void Each(const std::vector<Group>& groups,
 
 std::string ConsumerCells(const ConsumerTally& tally) {
   std::string out = " |";
-  for (const int count : {tally.urgent_by_lie, tally.urgent_false, tally.false_count,
-                          tally.true_count, tally.late, tally.missed, tally.planner_contacts,
-                          tally.planner_needless}) {
+  for (const int count :
+       {tally.urgent_by_lie, tally.urgent_false, tally.false_count, tally.true_count, tally.late,
+        tally.missed, tally.planner_contacts, tally.planner_needless}) {
     out += Cell(std::to_string(count), 5);
   }
   return out;

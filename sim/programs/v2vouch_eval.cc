@@ -113,8 +113,7 @@ int PrintLies(const v2vouch::evaluation::SpoofRun& run,
   return kGood;
 }
 
-int JudgeLies(const std::string& path, bool with_message_checks, bool with_warnings,
-              bool as_json) {
+int JudgeLies(const std::string& path, bool with_message_checks, bool with_warnings, bool as_json) {
   using namespace v2vouch::evaluation;
   RunLog log;
   if (!Load(path, log, ReadScope::kSpoof)) return kFailed;

@@ -267,9 +267,9 @@ std::string SpoofTable(const SpoofRun& run) {
   const auto gospa = [](const std::optional<double>& v) {
     return v ? Fixed(*v, 2) + " m" : std::string("none");
   };
-  out += Line("GOSPA of V2V, PRIORITY, LOCAL",
-              gospa(run.gospa.v2v) + ", " + gospa(run.gospa.priority) + ", " +
-                  gospa(run.gospa.local));
+  out +=
+      Line("GOSPA of V2V, PRIORITY, LOCAL",
+           gospa(run.gospa.v2v) + ", " + gospa(run.gospa.priority) + ", " + gospa(run.gospa.local));
   out += "honest senders\n";
   out +=
       Line("heard", std::to_string(h.senders) + " devices, " + Fixed(hours, 3) + " vehicle-hours");

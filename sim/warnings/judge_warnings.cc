@@ -87,10 +87,12 @@ std::int64_t ObjectAt(const Truth& truth, Timestamp t, const Eigen::Vector2d& p_
 
 bool IsActive(Level level, Level least) { return level != Level::kLost && level >= least; }
 
-std::vector<Episode> Episodes(const std::vector<SaidWarnings>& said, const Truth& truth,
-                              bool is_truth, Level least, const LocalSays* local = nullptr) {
+std::vector<Episode> Episodes(const std::vector<SaidWarnings>& said, Timestamp end,
+                              const Truth& truth, bool is_truth, Level least,
+                              const LocalSays* local = nullptr) {
   std::vector<Episode> episodes;
   for (const SaidWarnings& each : said) {
+    if (each.at > end) break;
     for (std::size_t i = 0; i < each.list.warnings.size(); ++i) {
       const warnings::Warning& warning = each.list.warnings[i];
       if (!IsActive(warning.level, least)) continue;
@@ -143,22 +145,21 @@ Timestamp InSight(const Truth& truth, std::int64_t id) {
   return Timestamp::max();
 }
 
-// Whether a list could hold the vehicle at `t`: in sight for 0.3 s on end until then, or for so long
-// altogether that it could have been vouched for. A glimpse long before is neither.
+// Whether a list could hold the vehicle at `t`: in sight for 0.3 s on end until then, or for so
+// long altogether that it could have been vouched for. A glimpse long before is neither.
 bool CouldBeListed(const Truth& truth, std::int64_t id, Timestamp t) {
   constexpr double kVouched_s = 2.0;
   for (const TruthObject& object : truth.objects) {
     if (object.id != id) continue;
-    double seen_s = 0.0;
-    std::optional<Timestamp> since, last;
-    for (const TruthSample& sample : object.motion.samples()) {
-      if (sample.stamp > t) break;
-      if (sample.is_hidden) since.reset();
-      if (!sample.is_hidden && last) seen_s += ToSeconds(sample.stamp - *last);
-      if (!sample.is_hidden && !since) since = sample.stamp;
-      last = sample.stamp;
+    Duration seen{}, on_end{};
+    const auto& samples = object.motion.samples();
+    for (std::size_t i = 1; i < samples.size() && samples[i].stamp <= t; ++i) {
+      const Duration step = samples[i].stamp - samples[i - 1].stamp;
+      const bool is_seen = !samples[i - 1].is_hidden && !samples[i].is_hidden;
+      on_end = is_seen ? on_end + step : Duration{};
+      if (!samples[i].is_hidden) seen += step;
     }
-    return seen_s >= kVouched_s || (since && t - *since >= FromSeconds(0.3));
+    return seen >= FromSeconds(kVouched_s) || on_end >= FromSeconds(0.3);
   }
   return false;
 }
@@ -250,15 +251,18 @@ WarnScore JudgeWarnings(const WarnRun& run) {
   score.scenario = run.scenario;
   score.seconds = run.seconds;
   score.unwarned = Simulate(run.truth, run.body, std::nullopt, kPlanner);
+  // Once the bodies touch, the drive that goes on through the other vehicle means nothing.
+  const Timestamp end = score.unwarned.has_contact ? score.unwarned.contact : Timestamp::max();
   score.truth_first_urgent_s = SecondsOf(First(run.truth_said, Level::kUrgent), run.truth);
   score.truth_first_warn_s = SecondsOf(First(run.truth_said, Level::kWarn), run.truth);
-  const auto truth_warn = Episodes(run.truth_said, run.truth, true, Level::kWarn);
-  const auto truth_advise = Episodes(run.truth_said, run.truth, true, Level::kAdvise);
+  const auto truth_warn = Episodes(run.truth_said, end, run.truth, true, Level::kWarn);
+  const auto truth_advise = Episodes(run.truth_said, end, run.truth, true, Level::kAdvise);
   const LocalSays local(run.said[static_cast<std::size_t>(Consumer::kLocal)]);
   for (const Consumer consumer : kConsumers) {
     const auto& said = run.said[static_cast<std::size_t>(consumer)];
     ConsumerScore& each = score.consumers[static_cast<std::size_t>(consumer)];
-    Compare(run, truth_warn, truth_advise, Episodes(said, run.truth, false, Level::kWarn, &local), each);
+    Compare(run, truth_warn, truth_advise,
+            Episodes(said, end, run.truth, false, Level::kWarn, &local), each);
     const auto urgent = First(said, Level::kUrgent);
     const auto warn = First(said, Level::kWarn);
     each.planner_brakes = urgent.has_value();

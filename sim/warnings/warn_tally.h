@@ -19,13 +19,13 @@ struct ConsumerTally {
   int urgent = 0;
   int urgent_false = 0;
   int urgent_by_lie = 0;
-  int runs_by_lie = 0;          ///< Runs with at least one URGENT caused by a lie.
-  int planner_contacts = 0;     ///< Runs in which it still comes to a contact.
+  int runs_by_lie = 0;       ///< Runs with at least one URGENT caused by a lie.
+  int planner_contacts = 0;  ///< Runs in which it still comes to a contact.
   int driver_contacts = 0;
-  int planner_needless = 0;     ///< Runs in which braking starts and none was needed ...
+  int planner_needless = 0;  ///< Runs in which braking starts and none was needed ...
   int driver_needless = 0;
-  double speed_lost_mps = 0.0;  ///< ... and what the planner's cost, summed.
-  std::vector<double> delays_s; ///< Against truth, of true and late ones.
+  double speed_lost_mps = 0.0;   ///< ... and what the planner's cost, summed.
+  std::vector<double> delays_s;  ///< Against truth, of true and late ones.
 
   void Add(const ConsumerTally& other);
   [[nodiscard]] std::optional<double> delay_p95_s() const;

@@ -10,9 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json Number(double v) {
-  return std::isfinite(v) ? Json(v) : Json(nullptr);
-}
+Json Number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 
 Json OutcomeJson(const Outcome& outcome, bool brakes, bool is_needed) {
   return {{"brakes", brakes},
@@ -62,7 +60,6 @@ std::string WarnScoreJson(const WarnScore& score) {
              .dump() +
          "\n";
 }
-
 
 namespace {
 

@@ -24,8 +24,8 @@ TargetList ListOf(int tracks, Timestamp t) {
     const double row = i / 5;
     const double lane = i % 5;
     const double yaw = lane < 3.0 ? 0.0 : lane < 4.0 ? kPi : -0.5 * kPi;
-    target.state_O.mean << 15.0 + 8.0 * row, lane < 4.0 ? 3.5 * (lane - 1.0) : 15.0 + 4.0 * row, yaw,
-        8.0 + row, 0.02, -0.3;
+    target.state_O.mean << 15.0 + 8.0 * row, lane < 4.0 ? 3.5 * (lane - 1.0) : 15.0 + 4.0 * row,
+        yaw, 8.0 + row, 0.02, -0.3;
     target.state_O.covariance.setZero();
     target.state_O.covariance.diagonal() << 0.09, 0.09, 0.0025, 0.25, 0.0025, 0.25;
     target.extent = {4.5, 1.8, 0.2, 0.1};

@@ -185,7 +185,8 @@ Conflict DrawByDraw(const EgoFan& ego, const BodyTarget& target, const StateMatr
   Conflict out;
   Motion other;
   for (const Draw& draw : NormalDraws()) {
-    const Eigen::Matrix<double, 6, 1> z = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(draw.data());
+    const Eigen::Matrix<double, 6, 1> z =
+        Eigen::Map<const Eigen::Matrix<double, 6, 1>>(draw.data());
     PredictTarget(target.mean + root * z, false, ego.steps(), other);
     const Motion& own = ego.Of(draw[6], draw[7]);
     bool has_touched = false;
@@ -203,9 +204,8 @@ Conflict DrawByDraw(const EgoFan& ego, const BodyTarget& target, const StateMatr
   }
   const auto at = [](std::vector<double>& v, double share) {
     std::ranges::sort(v);
-    return v.empty()
-               ? kNaN
-               : v[static_cast<std::size_t>(share * static_cast<double>(v.size() - 1) + 0.5)];
+    return v.empty() ? kNaN
+                     : v[static_cast<std::size_t>(share * static_cast<double>(v.size() - 1) + 0.5)];
   };
   out.probability = static_cast<double>(wide.size()) / kDrawCount;
   out.probability_exact = static_cast<double>(exact.size()) / kDrawCount;

@@ -178,8 +178,9 @@ TEST(Summary, HasTheWarningsOfThreeConsumersForEveryAttack) {
   EXPECT_TRUE(Find(JudgeTargets(s), "URGENT caused by a lie")->is_met());
   a.warnings = Warned(3, 1);
   EXPECT_FALSE(Find(JudgeTargets(Summarise({a, b})), "URGENT caused by a lie")->is_met());
-  EXPECT_FALSE(Find(JudgeTargets(Summarise({Attack("A1", "ahead_15m", 1, 1.0)})),
-                    "URGENT caused by a lie")->value);
+  EXPECT_FALSE(
+      Find(JudgeTargets(Summarise({Attack("A1", "ahead_15m", 1, 1.0)})), "URGENT caused by a lie")
+          ->value);
 }
 
 TEST(Summary, ComparesGospaWithTheSameRunWithoutAttack) {

@@ -102,6 +102,15 @@ TEST(JudgeWarnings, AGlimpseLongBeforeIsNoSight) {
   EXPECT_EQ(Of(JudgeWarnings(RunOf(truth)), Consumer::kOurs).unavoidable, 1);
 }
 
+TEST(JudgeWarnings, WhatIsSaidAfterTheContactDoesNotCount) {
+  WarnRun run = RunOf(Drive());  // Contact at 4.9 s.
+  Say(run.said[2], 2.0, 4.5, Level::kWarn, 80.0);
+  Say(run.said[2], 5.2, 5.9, Level::kUrgent, 140.0);
+  const WarnScore score = JudgeWarnings(run);
+  EXPECT_EQ(Of(score, Consumer::kOurs).true_count, 1);
+  EXPECT_EQ(Of(score, Consumer::kOurs).urgent_false, 0);
+}
+
 TEST(JudgeWarnings, ShortPausesAreOneEpisode) {
   WarnRun run = RunOf(Drive());
   Say(run.said[2], 2.0, 3.0, Level::kWarn, 80.0);
