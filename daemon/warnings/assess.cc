@@ -19,6 +19,18 @@ constexpr double kAdjacent_m = 5.4;
 
 double Phi(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
+// One behind the other: whether the follower, braking with `decel_mps2` after `after_s`, never
+// closes the gap to a lead that goes on braking to a stop as it does now.
+bool StopsBehind(double gap_m, double speed_mps, double lead_mps, double lead_decel_mps2,
+                 double after_s, double decel_mps2) {
+  for (double t_s = 0.0; speed_mps > 0.0 && gap_m > 0.0; t_s += kStep_s) {
+    gap_m += kStep_s * (lead_mps - speed_mps);
+    lead_mps = std::max(0.0, lead_mps - kStep_s * lead_decel_mps2);
+    if (t_s >= after_s) speed_mps -= kStep_s * decel_mps2;
+  }
+  return gap_m > 0.0;
+}
+
 class Assessor {
  public:
   Assessor(const Scene& scene, const EgoBody& body, const WarningsConfig& config)
@@ -85,10 +97,28 @@ class Assessor {
                                            0.5 * body_.length_m - body_target_.size.length_m);
     Figures figures = FiguresOf(conflict);
     figures.required_decel_mps2 = closing * closing / (2.0 * gap_m) + lead_brakes;
-    figures.warn_before_s = config_.driver_reaction_s + closing / (2.0 * config_.driver_decel_mps2);
+    const double needed_s = config_.driver_reaction_s + closing / (2.0 * config_.driver_decel_mps2);
+    const double usual_s = closing / (2.0 * config_.usual_decel_mps2);
+    figures.warn_before_s = std::max(needed_s, std::min(needed_s + config_.warn_margin_s, usual_s));
     figures.urgent_before_s = config_.planner_reaction_s +
                               closing / (2.0 * config_.planner_decel_mps2) +
                               config_.urgent_margin_s;
+    // While the lead brakes hard the closing speed now says too little: it grows until the contact.
+    if (lead_brakes > config_.usual_decel_mps2) {
+      const double lead_mps = std::max(0.0, body_target_.mean[kSpeed]);
+      const auto is_too_late = [&](double after_s, double decel_mps2) {
+        return !StopsBehind(gap_m, plan_.speed_mps, lead_mps, lead_brakes, after_s, decel_mps2);
+      };
+      const double contact_s =
+          std::isfinite(conflict.exact_median_s) ? conflict.exact_median_s : conflict.median_s;
+      if (is_too_late(config_.driver_reaction_s, config_.driver_decel_mps2)) {
+        figures.warn_before_s = std::max(figures.warn_before_s, contact_s);
+      }
+      if (is_too_late(config_.planner_reaction_s + config_.urgent_margin_s,
+                      config_.planner_decel_mps2)) {
+        figures.urgent_before_s = std::max(figures.urgent_before_s, contact_s);
+      }
+    }
     Judge(Kind::kFcw, Side::kAhead, conflict, figures);
   }
 

@@ -64,6 +64,110 @@ bool BoundsMeet(const Motion& a, const Motion& b, double reach_m) {
   return (in_a.first - reach_m <= in_b.second).all() && (in_b.first - reach_m <= in_a.second).all();
 }
 
+// First touches over the draws.
+struct Touches {
+  std::vector<double> wide_s;
+  std::vector<double> exact_s;
+  double reachable_s = kNaN;
+};
+
+constexpr std::size_t kLanes = TargetLanes::kLanes;
+static_assert(kDrawCount % kLanes == 0);
+
+// Eight draws: one step of all, then the next, until all have touched or none can any more.
+class DrawBlock {
+ public:
+  DrawBlock(const EgoFan& ego, const BodyTarget& target, const StateMatrix& root,
+            bool keeps_braking, std::size_t first)
+      : ego_(ego), size_(target.size), lanes_(States(target, root, first), keeps_braking) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const Draw& draw = NormalDraws()[first + i];
+      own_[i] = &ego.Of(draw[6], draw[7]);
+      spread_[i] = Eigen::Map<const State6>(draw.data()).squaredNorm();
+    }
+  }
+
+  void Run(double near, Touches& touches) {
+    const double far_m = ego_.wide().radius_m() + size_.radius_m();
+    const double far_m2 = far_m * far_m;
+    const auto steps = static_cast<std::size_t>(ego_.steps());
+    for (std::size_t k = 0; k <= steps && open_ > 0; ++k) {
+      TargetLanes::Row m2;
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const Eigen::Vector2d& own = (*own_[i])[k].centre;
+        const double dx = own.x() - lanes_.x_m()[i];
+        const double dy = own.y() - lanes_.y_m()[i];
+        m2[i] = dx * dx + dy * dy;
+      }
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        if (m2[i] <= far_m2 && !is_done_[i]) Try(i, k, near, touches);
+      }
+      // Now and then: can any of them still come near?
+      if (k % 8 == 4 && !CanMeet(m2, steps - k, far_m)) return;
+      lanes_.Step();
+    }
+  }
+
+ private:
+  static std::array<StateVector, kLanes> States(const BodyTarget& target, const StateMatrix& root,
+                                                std::size_t first) {
+    std::array<StateVector, kLanes> states;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const State6 z = Eigen::Map<const State6>(NormalDraws()[first + i].data());
+      states[i] = target.mean + root * z;
+    }
+    return states;
+  }
+
+  void Try(std::size_t i, std::size_t k, double near, Touches& touches) {
+    const Box& own = (*own_[i])[k];
+    const Box other = lanes_.At(i);
+    if (!Touch(own, ego_.wide(), other, size_)) return;
+    const double t_s = kStep_s * static_cast<double>(k);
+    if (!has_touched_[i]) {
+      has_touched_[i] = true;
+      touches.wide_s.push_back(t_s);
+      if (spread_[i] <= near && !(touches.reachable_s <= t_s)) touches.reachable_s = t_s;
+    }
+    if (!Touch(own, ego_.exact(), other, size_)) return;
+    touches.exact_s.push_back(t_s);
+    is_done_[i] = true;
+    --open_;
+  }
+
+  [[nodiscard]] bool CanMeet(const TargetLanes::Row& m2, std::size_t steps_left,
+                             double far_m) const {
+    const double time_s = kStep_s * static_cast<double>(steps_left);
+    const double reach_m = far_m + 1e-6 + lanes_.FurthestIn(time_s) +
+                           ego_.longest_step_m() * static_cast<double>(steps_left);
+    double nearest_m2 = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      if (!is_done_[i]) nearest_m2 = std::min(nearest_m2, m2[i]);
+    }
+    return nearest_m2 <= reach_m * reach_m;
+  }
+
+  const EgoFan& ego_;
+  const HalfSize& size_;
+  TargetLanes lanes_;
+  std::array<const Motion*, kLanes> own_{};
+  TargetLanes::Row spread_{};
+  std::array<bool, kLanes> has_touched_{};
+  std::array<bool, kLanes> is_done_{};
+  int open_ = static_cast<int>(kLanes);
+};
+
+void TakeDraws(const EgoFan& ego, const BodyTarget& target, bool keeps_braking,
+               const WarningsConfig& config, Touches& touches) {
+  const StateMatrix root = SquareRoot(target.covariance);
+  const double near = config.hidden_sigmas * config.hidden_sigmas;
+  touches.wide_s.reserve(kDrawCount);
+  touches.exact_s.reserve(kDrawCount);
+  for (std::size_t first = 0; first < kDrawCount; first += kLanes) {
+    DrawBlock(ego, target, root, keeps_braking, first).Run(near, touches);
+  }
+}
+
 }  // namespace
 
 void AssessGap(const Motion& ego, const HalfSize& ego_size, const Motion& other,
@@ -111,6 +215,10 @@ EgoFan::EgoFan(const EgoPlan& plan, const EgoSigmas& sigmas, const EgoBody& body
     const double by = kSpread[i % 5] * sigmas.yaw_rate_radps / std::max(3.0, plan.speed_mps);
     each.curvature_per_m += by;
     PredictEgo(each, body, steps, fan_[i]);
+    for (std::size_t k = 1; k < fan_[i].size(); ++k) {
+      const double step_m = (fan_[i][k].centre - fan_[i][k - 1].centre).norm();
+      longest_step_m_ = std::max(longest_step_m_, step_m);
+    }
   }
 }
 
@@ -123,7 +231,6 @@ const Motion& EgoFan::Of(double z_speed, double z_yaw_rate) const {
 
 Conflict AssessConflict(const EgoFan& ego, const BodyTarget& target, const WarningsConfig& config) {
   const int steps = ego.steps();
-  const HalfSize& exact = ego.exact();
   const HalfSize& wide = ego.wide();
   Conflict conflict;
   const bool keeps_braking = KeepsBraking(target);
@@ -134,38 +241,14 @@ Conflict AssessConflict(const EgoFan& ego, const BodyTarget& target, const Warni
     AssessGap(mean_ego, wide, mean_other, target.size, conflict);
   }
   if (!CouldMeet(mean_ego, wide, mean_other, target)) return conflict;
-  const StateMatrix root = SquareRoot(target.covariance);
-  const double near = config.hidden_sigmas * config.hidden_sigmas;
-  const double far_m = wide.radius_m() + target.size.radius_m();
-  const double far_m2 = far_m * far_m;
-  std::vector<double> touches;
-  std::vector<double> exact_touches;
-  Motion other;
-  for (const Draw& draw : NormalDraws()) {
-    const State6 z = Eigen::Map<const State6>(draw.data());
-    PredictTarget(target.mean + root * z, keeps_braking, steps, other);
-    const Motion& own = ego.Of(draw[6], draw[7]);
-    bool has_touched = false;
-    for (std::size_t k = 0; k < other.size(); ++k) {
-      if ((own[k].centre - other[k].centre).squaredNorm() > far_m2) continue;
-      if (!Touch(own[k], wide, other[k], target.size)) continue;
-      const double t_s = kStep_s * static_cast<double>(k);
-      if (!has_touched) {
-        has_touched = true;
-        touches.push_back(t_s);
-        if (z.squaredNorm() <= near && !(conflict.reachable_s <= t_s)) conflict.reachable_s = t_s;
-      }
-      if (Touch(own[k], exact, other[k], target.size)) {
-        exact_touches.push_back(t_s);
-        break;
-      }
-    }
-  }
-  conflict.probability = static_cast<double>(touches.size()) / kDrawCount;
-  conflict.probability_exact = static_cast<double>(exact_touches.size()) / kDrawCount;
-  conflict.early_s = Quantile(touches, 0.1);
-  conflict.median_s = Quantile(touches, 0.5);
-  conflict.exact_median_s = Quantile(exact_touches, 0.5);
+  Touches touches;
+  TakeDraws(ego, target, keeps_braking, config, touches);
+  conflict.reachable_s = touches.reachable_s;
+  conflict.probability = static_cast<double>(touches.wide_s.size()) / kDrawCount;
+  conflict.probability_exact = static_cast<double>(touches.exact_s.size()) / kDrawCount;
+  conflict.early_s = Quantile(touches.wide_s, 0.1);
+  conflict.median_s = Quantile(touches.wide_s, 0.5);
+  conflict.exact_median_s = Quantile(touches.exact_s, 0.5);
   if (conflict.place_B.hasNaN() && std::isfinite(conflict.median_s)) {
     conflict.place_B =
         mean_ego[static_cast<std::size_t>(std::lround(conflict.median_s / kStep_s))].centre;

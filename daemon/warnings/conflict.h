@@ -48,6 +48,8 @@ class EgoFan {
   [[nodiscard]] const Motion& mean() const { return mean_; }
   /// That of two standard normal numbers.
   [[nodiscard]] const Motion& Of(double z_speed, double z_yaw_rate) const;
+  /// Its centre moves no further than this in one step, under any of these.
+  [[nodiscard]] double longest_step_m() const { return longest_step_m_; }
   [[nodiscard]] int steps() const { return static_cast<int>(mean_.size()) - 1; }
   [[nodiscard]] const HalfSize& exact() const { return exact_; }
   [[nodiscard]] const HalfSize& wide() const { return wide_; }  ///< With body_margin_m.
@@ -57,6 +59,7 @@ class EgoFan {
   HalfSize wide_;
   Motion mean_;
   std::array<Motion, 25> fan_;
+  double longest_step_m_ = 0.0;
 };
 
 Conflict AssessConflict(const EgoFan& ego, const BodyTarget& target, const WarningsConfig& config);

@@ -109,6 +109,61 @@ void PredictTarget(const StateVector& state, bool keeps_braking, int steps, Moti
   }
 }
 
+TargetLanes::TargetLanes(const std::array<StateVector, kLanes>& states, bool keeps_braking)
+    : keeps_braking_(keeps_braking) {
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const StateVector& state = states[i];
+    x_[i] = state[kX];
+    y_[i] = state[kY];
+    cos_[i] = std::cos(state[kYaw]);
+    sin_[i] = std::sin(state[kYaw]);
+    speed_[i] = state[kSpeed];
+    yaw_rate_[i] = std::abs(state[kSpeed]) < 0.5 ? 0.0 : state[kYawRate];
+    accel_[i] = state[kAccel];
+  }
+}
+
+void TargetLanes::Step() {
+  constexpr double kFade = 1.0 - kStep_s / kYawRateFades_s;
+  const bool accelerates = steps_ * kStep_s < kAccelHolds_s - 1e-9 || keeps_braking_;
+  ++steps_;
+  // No branch inside, so that lanes go together; operations and order are PredictTarget's.
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const double before_mps = speed_[i];
+    double speed_mps = before_mps + kStep_s * accel_[i];
+    speed_mps = before_mps * speed_mps < 0.0 ? 0.0 : speed_mps;
+    speed_mps = accelerates && std::abs(before_mps) >= 0.2 ? speed_mps : before_mps;
+    const double moved_m = 0.5 * kStep_s * (before_mps + speed_mps);
+    const double by_rad = speed_mps == 0.0 ? 0.0 : kStep_s * yaw_rate_[i];
+    const double half_rad = 0.5 * by_rad;
+    const double c_half = 1.0 - 0.5 * half_rad * half_rad;
+    const double middle_x = c_half * cos_[i] - half_rad * sin_[i];
+    const double middle_y = half_rad * cos_[i] + c_half * sin_[i];
+    const double middle_n = 1.5 - 0.5 * (middle_x * middle_x + middle_y * middle_y);
+    x_[i] += moved_m * (middle_x * middle_n);
+    y_[i] += moved_m * (middle_y * middle_n);
+    const double c = 1.0 - 0.5 * by_rad * by_rad;
+    const double turned_x = c * cos_[i] - by_rad * sin_[i];
+    const double turned_y = by_rad * cos_[i] + c * sin_[i];
+    const double n = 1.5 - 0.5 * (turned_x * turned_x + turned_y * turned_y);
+    cos_[i] = turned_x * n;
+    sin_[i] = turned_y * n;
+    speed_[i] = speed_mps;
+    yaw_rate_[i] *= kFade;
+  }
+}
+
+double TargetLanes::FurthestIn(double time_s) const {
+  const double accelerates_s =
+      keeps_braking_ ? time_s : std::clamp(kAccelHolds_s - steps_ * kStep_s, 0.0, time_s);
+  double furthest_m = 0.0;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const double speed_mps = std::abs(speed_[i]) + std::abs(accel_[i]) * accelerates_s;
+    furthest_m = std::max(furthest_m, speed_mps * time_s);
+  }
+  return furthest_m;
+}
+
 void PredictEgo(const EgoPlan& plan, const EgoBody& body, int steps, Motion& motion) {
   motion.resize(static_cast<std::size_t>(steps) + 1);
   Box axle{{0.0, 0.0}, {1.0, 0.0}};

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "daemon/common/data/track.h"
@@ -34,6 +36,29 @@ bool Touch(const Box& a, const HalfSize& size_a, const Box& b, const HalfSize& s
 /// A vehicle at constant acceleration for 1 s, then at constant speed; one that brakes for sure
 /// goes on braking. The yaw rate fades with 3 s. Nothing starts to roll backwards.
 void PredictTarget(const StateVector& state, bool keeps_braking, int steps, Motion& motion);
+
+/// Eight vehicles side by side, step by step: each goes as by PredictTarget, bit for bit. One
+/// vehicle's steps wait for each other; eight do not, and the compiler takes two at a time.
+class TargetLanes {
+ public:
+  static constexpr std::size_t kLanes = 8;
+  using Row = std::array<double, kLanes>;
+
+  TargetLanes(const std::array<StateVector, kLanes>& states, bool keeps_braking);
+  void Step();
+  [[nodiscard]] const Row& x_m() const { return x_; }
+  [[nodiscard]] const Row& y_m() const { return y_; }
+  [[nodiscard]] Box At(std::size_t lane) const {
+    return {{x_[lane], y_[lane]}, {cos_[lane], sin_[lane]}};
+  }
+  /// No lane gets further than this [m] within `time_s` from now.
+  [[nodiscard]] double FurthestIn(double time_s) const;
+
+ private:
+  bool keeps_braking_;
+  int steps_ = 0;
+  alignas(64) Row x_, y_, cos_, sin_, speed_, yaw_rate_, accel_;
+};
 
 /// What the ego may do next.
 struct EgoPlan {

@@ -57,6 +57,22 @@ const char* LevelName(Level level) {
   return kNames[static_cast<std::size_t>(level)];
 }
 
+void Warner::OnEgo(const EgoReading& ego) {
+  constexpr double kSmooth_s = 0.2;
+  constexpr double kOffsetShare = 0.3;  // Of a sample's sigma: what averaging does not take away.
+  EgoReading next = ego;
+  const double dt_s = ego_ ? ToSeconds(ego.stamp - ego_->stamp) : 0.0;
+  const double change = ego_ ? ego.yaw_rate_radps - ego_->yaw_rate_radps : 0.0;
+  if (dt_s > 0.0 && dt_s <= config_.stale_s && std::abs(change) <= 3.0 * ego.yaw_rate_sigma_radps) {
+    const double share = 1.0 - std::exp(-dt_s / kSmooth_s);
+    next.yaw_rate_radps = ego_->yaw_rate_radps + share * change;
+    const double sigma =
+        std::hypot((1.0 - share) * ego_->yaw_rate_sigma_radps, share * ego.yaw_rate_sigma_radps);
+    next.yaw_rate_sigma_radps = std::max(sigma, kOffsetShare * ego.yaw_rate_sigma_radps);
+  }
+  ego_ = next;
+}
+
 std::optional<WarningList> Warner::OnLocal(const TargetList& list) {
   local_ = list;
   if (!list.is_stale) last_fresh_ = std::max(last_fresh_, list.stamp);

@@ -16,7 +16,9 @@ class Warner {
  public:
   Warner(const WarningsConfig& config, const EgoBody& body) : config_(config), body_(body) {}
 
-  void OnEgo(const EgoReading& ego) { ego_ = ego; }
+  /// The yaw rate is smoothed over 0.2 s, or every sample's noise would bend the path ahead; a
+  /// change beyond its noise is followed at once.
+  void OnEgo(const EgoReading& ego);
   void OnIntent(const EgoIntent& intent) { intent_ = intent; }
   /// PRIORITY follows LOCAL at once, so warnings are made when it comes. Where no PRIORITY is
   /// heard any more, LOCAL makes them.

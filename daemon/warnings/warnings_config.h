@@ -12,9 +12,12 @@ struct WarningsConfig {
   double advise_probability = 0.2;  ///< ADVISE from this probability of contact on.
   double warn_probability = 0.5;
   double urgent_probability = 0.9;
-  double driver_reaction_s = 1.2;   ///< WARN: reaction and braking of a driver ...
-  double driver_decel_mps2 = 4.0;   ///< ... and this much before he would have to.
-  double warn_margin_s = 0.5;       ///< Of crossing and oncoming vehicles; none for those ahead.
+  double driver_reaction_s = 1.2;  ///< WARN: reaction and braking of a driver ...
+  double driver_decel_mps2 = 4.0;  ///< ... and this much before he would have to.
+  /// Of crossing and oncoming vehicles. Of those ahead only as far as a driver who brakes with
+  /// `usual_decel_mps2`, without any reaction, would have begun: usual stops are not warned of.
+  double warn_margin_s = 0.5;
+  double usual_decel_mps2 = 2.2;
   double planner_reaction_s = 0.2;  ///< URGENT: the same of a planner.
   double planner_decel_mps2 = 8.0;
   double urgent_margin_s = 0.3;
@@ -52,6 +55,7 @@ struct WarningsConfig {
     a.Field("driver_reaction_s", driver_reaction_s, {.at_least = 0.0, .at_most = 5.0});
     a.Field("driver_decel_mps2", driver_decel_mps2, {.above = 0.5, .at_most = 12.0});
     a.Field("warn_margin_s", warn_margin_s, {.at_least = 0.0, .at_most = 5.0});
+    a.Field("usual_decel_mps2", usual_decel_mps2, {.above = 0.5, .at_most = 12.0});
     a.Field("planner_reaction_s", planner_reaction_s, {.at_least = 0.0, .at_most = 5.0});
     a.Field("planner_decel_mps2", planner_decel_mps2, {.above = 0.5, .at_most = 12.0});
     a.Field("urgent_margin_s", urgent_margin_s, {.at_least = 0.0, .at_most = 5.0});

@@ -31,6 +31,7 @@ Json ToJson(const RunRecord& record) {
                {"step_p99_us", record.step_p99_us},
                {"step_max_us", record.step_max_us},
                {"spoof", Json::parse(evaluation::SpoofJson(record.ours))}};
+  if (record.warnings) json["warnings"] = Json::parse(record.warnings_json);
   if (record.paper) json["paper"] = Json::parse(evaluation::SpoofJson(*record.paper));
   return json;
 }
@@ -51,6 +52,11 @@ std::optional<RunRecord> FromJson(const Json& json) {
   record.step_p99_us = json.value("step_p99_us", 0.0);
   record.step_max_us = json.value("step_max_us", 0.0);
   if (!evaluation::ReadSpoofJson(json.at("spoof").dump(), record.ours)) return std::nullopt;
+  if (json.contains("warnings")) {
+    record.warnings_json = json["warnings"].dump();
+    record.warnings.emplace();
+    if (!evaluation::ReadWarnTally(record.warnings_json, *record.warnings)) return std::nullopt;
+  }
   if (json.contains("paper")) {
     record.paper.emplace();
     if (!evaluation::ReadSpoofJson(json["paper"].dump(), *record.paper)) return std::nullopt;

@@ -8,6 +8,7 @@
 
 #include "sim/campaign/job.h"
 #include "sim/spoofing/spoof_run.h"
+#include "sim/warnings/warn_tally.h"
 
 namespace v2vouch::campaign {
 
@@ -16,8 +17,11 @@ struct RunRecord {
   Job job;
   evaluation::SpoofRun ours;
   std::optional<evaluation::SpoofRun> paper;  ///< The same run by the paper's method.
-  std::string local_digest;                   ///< SHA-256 of LOCAL, from the replay.
-  double step_p99_us = 0.0;                   ///< Of the daemon's core, per input.
+  /// What the warnings of the run came to, and the JSON of v2vouch-eval it was read from.
+  std::optional<evaluation::WarnTally> warnings;
+  std::string warnings_json;
+  std::string local_digest;  ///< SHA-256 of LOCAL, from the replay.
+  double step_p99_us = 0.0;  ///< Of the daemon's core, per input.
   double step_max_us = 0.0;
 };
 

@@ -135,6 +135,36 @@ std::string FieldTable(const std::vector<const Group*>& groups) {
   return has_any ? "<table>" + rows + "</table>\n" : "";
 }
 
+std::string WarningTable(const Summary& summary) {
+  std::string rows =
+      Header({"attack", "runs", "URGENT by a lie: V2V alone", "ours", "needless braking: V2V alone",
+              "LOCAL", "ours", "true / late / missed: V2V alone", "LOCAL", "ours",
+              "contacts, nobody brakes", "V2V alone", "LOCAL", "ours"});
+  const auto add = [&rows](const std::string& name, const evaluation::WarnTally& w) {
+    const auto found = [](const evaluation::ConsumerTally& t) {
+      return Cell(std::to_string(t.true_count) + " / " + std::to_string(t.late) + " / " +
+                  std::to_string(t.missed));
+    };
+    rows += "<tr>" + Cell(Escape(name)) + Cell(std::to_string(w.runs)) +
+            Cell(std::to_string(w.v2v.urgent_by_lie)) + Cell(std::to_string(w.ours.urgent_by_lie));
+    for (const auto* t : {&w.v2v, &w.local, &w.ours}) {
+      rows += Cell(std::to_string(t->planner_needless));
+    }
+    rows +=
+        found(w.v2v) + found(w.local) + found(w.ours) + Cell(std::to_string(w.contacts_unwarned));
+    for (const auto* t : {&w.v2v, &w.local, &w.ours}) {
+      rows += Cell(std::to_string(t->planner_contacts));
+    }
+    rows += "</tr>\n";
+  };
+  if (summary.plain && summary.plain->warnings) add("no overlay", *summary.plain->warnings);
+  for (const Group& group : summary.attacks) {
+    if (group.warnings) add(group.id, *group.warnings);
+  }
+  if (summary.attacked_warnings) add("all attacks", *summary.attacked_warnings);
+  return "<table>" + rows + "</table>\n";
+}
+
 std::string Card(const std::string& title, const std::string& about, const std::string& content) {
   return "<section class=\"card\"><h2>" + Escape(title) + "</h2>\n<p class=\"note\">" +
          Escape(about) + "</p>\n" + content + "</section>\n";
@@ -180,6 +210,15 @@ std::string ReportHtml(const Summary& summary) {
           (summary.weakest.empty() ? "" : ", set by " + Escape(summary.weakest)) + "</div>\n";
   html +=
       Card("Targets", "The worst of the attacks or conditions each covers.", TargetTable(summary));
+  if (summary.attacked_warnings) {
+    std::vector<const Group*> ids;
+    for (const Group& group : summary.attacks) ids.push_back(&group);
+    html += Card("Warnings",
+                 "The engine of v2vouch-warn on three inputs: V2V taken for true, LOCAL, and both "
+                 "lists. By a lie: false, of a vehicle whose track a liar's messages feed, and not "
+                 "said by LOCAL alone.",
+                 LieBars(ids) + WarningTable(summary));
+  }
   html += FamilyCards(leaves);
   if (summary.plain || !summary.honest.empty()) {
     html += Card(

@@ -122,6 +122,52 @@ std::string F1Bars(const std::vector<const Group*>& groups) {
   return svg.Finish();
 }
 
+std::string LieBars(const std::vector<const Group*>& groups) {
+  constexpr double kLeft = 110.0, kWidth = 860.0, kTop = 34.0, kBar = 8.0, kRow = 21.0;
+  std::vector<const Group*> shown;
+  for (const Group* group : groups) {
+    if (group->warnings && group->warnings->runs > 0) shown.push_back(group);
+  }
+  if (shown.empty()) return "";
+  const double height = kTop + kRow * static_cast<double>(shown.size()) + 44.0;
+  const double span = kWidth - kLeft - 90.0;
+  Svg svg(kWidth, height);
+  double x = kLeft;
+  for (const auto& [of, label] : {std::pair{colour::kV2v, "V2V alone"},
+                                  std::pair{colour::kPriority, "ours: PRIORITY and LOCAL"}}) {
+    svg.Rect(x, 8.0, 14.0, 12.0, Fill(of));
+    svg.Text(x + 20.0, 19.0, label, "class=\"legend\" font-size=\"13\"");
+    x += 140.0;
+  }
+  for (int i = 0; i <= 5; ++i) {
+    const double at = kLeft + span * i / 5.0;
+    svg.Line(at, kTop - 4.0, at, height - 40.0, std::string("stroke=\"") + colour::kGrid + "\"");
+    svg.Text(at, height - 26.0, std::to_string(20 * i) + " %",
+             "class=\"tick\" font-size=\"12\" text-anchor=\"middle\"");
+  }
+  svg.Text(kLeft, height - 7.0,
+           "share of the attacked runs in which a lie causes an URGENT warning",
+           "class=\"tick\" font-size=\"12\"");
+  double y = kTop;
+  for (const Group* group : shown) {
+    const auto& tally = *group->warnings;
+    svg.Text(kLeft - 10.0, y + kBar + 4.0, group->name(),
+             "class=\"label\" font-size=\"12\" text-anchor=\"end\"");
+    double at_y = y;
+    for (const auto& [of, count] : {std::pair{colour::kV2v, tally.v2v.runs_by_lie},
+                                    std::pair{colour::kPriority, tally.ours.runs_by_lie}}) {
+      const double length = span * count / tally.runs;
+      svg.Rect(kLeft, at_y, std::max(1.0, length), kBar - 1.0, Fill(of));
+      svg.Text(kLeft + length + 6.0, at_y + kBar - 0.5,
+               std::to_string(count) + " of " + std::to_string(tally.runs),
+               "class=\"tick\" font-size=\"9\"");
+      at_y += kBar;
+    }
+    y += kRow;
+  }
+  return svg.Finish();
+}
+
 std::string ExposureOverTime(const std::vector<const Group*>& groups, const std::string& id) {
   std::vector<const Group*> exposed;
   for (const Group* group : groups) {

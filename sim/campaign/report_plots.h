@@ -21,6 +21,10 @@ std::string ExposureOverTime(const std::vector<const Group*>& groups, const std:
 /// Share of attackers met against the time since their first false message in view.
 std::string MetOverTime(const std::vector<const Group*>& groups, const std::string& id);
 
+/// Share of each attack's runs in which a lie causes an URGENT, as bars: V2V taken for true and
+/// ours.
+std::string LieBars(const std::vector<const Group*>& groups);
+
 /// Slow drifts: median time until met, and largest exposure, against the rate; from the variants'
 /// names ("lateral_0.5mps").
 std::string DriftPlots(const std::vector<const Group*>& groups, const std::string& id);

@@ -45,11 +45,13 @@ class Run {
     if (!Child(Simulation(), problem)) return std::nullopt;
     const auto figures = Child(Replay(settings_.config, out_), problem);
     if (!figures || !TakeReplay(*figures, record, problem)) return std::nullopt;
-    if (!Score(out_, settings_.with_message_checks, record.ours, problem)) return std::nullopt;
+    const auto text = Judged(out_, true, problem);
+    if (!text || !TakeFigures(*text, record.ours, problem)) return std::nullopt;
+    if (settings_.with_warnings && !TakeWarnings(*text, record, problem)) return std::nullopt;
     if (settings_.paper_config.empty()) return record;
     record.paper.emplace();
     if (!Child(Replay(settings_.paper_config, paper_out_), problem) ||
-        !Score(paper_out_, false, *record.paper, problem)) {
+        !ScorePaper(*record.paper, problem)) {
       return std::nullopt;
     }
     return record;
@@ -103,15 +105,36 @@ class Run {
     return true;
   }
 
-  bool Score(const std::filesystem::path& log, bool with_message_checks, evaluation::SpoofRun& run,
-             std::string& problem) {
+  // What v2vouch-eval prints, or nothing with `problem` set.
+  std::optional<std::string> Judged(const std::filesystem::path& log, bool is_ours,
+                                    std::string& problem) {
     std::vector<std::string> command = {Program("v2vouch-eval"), log.string(), "--spoof", "--json"};
-    if (with_message_checks) command.emplace_back("--message-checks");
-    const auto text = Child(command, problem);
-    if (!text) return false;
-    if (evaluation::ReadSpoofJson(*text, run)) return true;
-    problem = "v2vouch-eval printed no figures: " + text->substr(0, 200);
+    if (is_ours && settings_.with_message_checks) command.emplace_back("--message-checks");
+    if (is_ours && settings_.with_warnings) command.emplace_back("--warnings");
+    return Child(command, problem);
+  }
+
+  static bool TakeFigures(const std::string& text, evaluation::SpoofRun& run,
+                          std::string& problem) {
+    if (evaluation::ReadSpoofJson(text, run)) return true;
+    problem = "v2vouch-eval printed no figures: " + text.substr(0, 200);
     return false;
+  }
+
+  static bool TakeWarnings(const std::string& text, RunRecord& record, std::string& problem) {
+    const Json json = Json::parse(text, nullptr, false);
+    record.warnings.emplace();
+    if (json.is_object() && json.contains("warnings")) {
+      record.warnings_json = json["warnings"].dump();
+      if (evaluation::ReadWarnTally(record.warnings_json, *record.warnings)) return true;
+    }
+    problem = "v2vouch-eval printed no figures of warnings: " + text.substr(0, 200);
+    return false;
+  }
+
+  bool ScorePaper(evaluation::SpoofRun& run, std::string& problem) {
+    const auto text = Judged(paper_out_, false, problem);
+    return text && TakeFigures(*text, run, problem);
   }
 
   const Job& job_;
@@ -124,6 +147,7 @@ bool IsThere(const Job& job, const RunnerSettings& settings) {
   const auto record = ReadRecord(RecordPath(settings.folder, job));
   if (!record) return false;
   if (settings.with_message_checks && !record->ours.checks_by_message) return false;
+  if (settings.with_warnings && !record->warnings) return false;
   return settings.paper_config.empty() || record->paper.has_value();
 }
 

@@ -19,6 +19,7 @@ struct RunnerSettings {
   std::filesystem::path config;        ///< Vehicle, with `v2v.message_verdicts: true`.
   std::filesystem::path paper_config;  ///< Empty: the paper's method is not run.
   bool with_message_checks = false;
+  bool with_warnings = false;  ///< Also the warnings of three consumers.
   bool keeps_logs = false;
   int at_a_time = 1;
 };

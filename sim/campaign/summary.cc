@@ -27,6 +27,28 @@ std::tuple<bool, char, int, std::string> Order(const std::string& id) {
   return {false, id[0], std::stoi(id.substr(1)), id};
 }
 
+// Adds an attacked run and the same without attack, where both have the lists.
+void AddGospa(const SpoofRun& with, const SpoofRun& without,
+              std::optional<GospaUnderAttack>& sums) {
+  const auto &a = with.gospa, &b = without.gospa;
+  if (!a.v2v || !a.priority || !a.local || !b.v2v || !b.priority || !b.local) return;
+  if (!sums) sums.emplace();
+  ++sums->runs;
+  sums->v2v_m += *a.v2v;
+  sums->v2v_plain_m += *b.v2v;
+  sums->priority_m += *a.priority;
+  sums->priority_plain_m += *b.priority;
+  sums->local_m += *a.local;
+  sums->local_plain_m += *b.local;
+}
+
+void MakeMeans(GospaUnderAttack& gospa) {
+  for (double* sum : {&gospa.v2v_m, &gospa.v2v_plain_m, &gospa.priority_m, &gospa.priority_plain_m,
+                      &gospa.local_m, &gospa.local_plain_m}) {
+    *sum /= gospa.runs;
+  }
+}
+
 Group Pool(const std::vector<const RunRecord*>& records,
            const std::map<World, const RunRecord*>& plain) {
   Group group;
@@ -37,6 +59,10 @@ Group Pool(const std::vector<const RunRecord*>& records,
     ours.push_back(&record->ours);
     if (record->paper) papers.push_back(&*record->paper);
     group.step_max_us = std::max(group.step_max_us, record->step_max_us);
+    if (record->warnings) {
+      if (!group.warnings) group.warnings.emplace();
+      group.warnings->Add(*record->warnings);
+    }
     if (record->job.overlay.kind != Kind::kAttack) continue;
     const auto reference = plain.find(WorldOf(record->job));
     if (reference == plain.end()) continue;
@@ -44,7 +70,9 @@ Group Pool(const std::vector<const RunRecord*>& records,
     if (reference->second->local_digest != record->local_digest) ++group.digests_changed;
     with.Add(record->ours.honest);
     without.Add(reference->second->ours.honest);
+    AddGospa(record->ours, reference->second->ours, group.gospa);
   }
+  if (group.gospa) MakeMeans(*group.gospa);
   group.attack = evaluation::PoolAttack(ours);
   if (!papers.empty()) group.paper = evaluation::PoolAttack(papers);
   const auto share = [](const HonestTreatment& h) { return 1.0 * h.validated / h.in_view; };
@@ -79,6 +107,18 @@ std::vector<Group> GroupsOf(Kind kind, const std::vector<RunRecord>& records,
 
 }  // namespace
 
+std::optional<double> GospaUnderAttack::averted() const {
+  const double added_m = v2v_m - v2v_plain_m;
+  if (added_m < 0.1) return std::nullopt;
+  return 1.0 - (priority_m - priority_plain_m) / added_m;
+}
+
+std::optional<double> Group::named_accuracy() const {
+  const int devices = attack.sources + attack.honest.senders;
+  if (devices == 0) return std::nullopt;
+  return 1.0 * (attack.accused + attack.honest.senders - attack.honest.accused) / devices;
+}
+
 Summary Summarise(const std::vector<RunRecord>& records) {
   Summary summary;
   summary.runs = static_cast<int>(records.size());
@@ -96,6 +136,15 @@ Summary Summarise(const std::vector<RunRecord>& records) {
   if (summary.honest.empty() && summary.plain) summary.all_honest = summary.plain->attack.honest;
   std::optional<double> weakest;
   for (const Group& group : summary.attacks) {
+    for (const char* phantom : {"A1", "A2", "A3", "A4", "A11"}) {
+      if (group.id != phantom) continue;
+      summary.phantom_messages.Add(group.attack.by_message.counts);
+      summary.phantom_sources.Add(group.attack.by_source.counts);
+    }
+    if (group.warnings) {
+      if (!summary.attacked_warnings) summary.attacked_warnings.emplace();
+      summary.attacked_warnings->Add(*group.warnings);
+    }
     const auto score = group.attack.score();
     if (!score || group.id == "A28" || (weakest && *score >= *weakest)) continue;
     weakest = score;

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/campaign/summary.h"
+#include "sim/campaign/summary_warnings.h"
 #include "sim/campaign/targets.h"
 #include "sim/plot/svg.h"
 
@@ -75,6 +76,9 @@ Json AttackJson(const Group& group) {
                {"f1_low", Optional(f1.low)},
                {"f1_high", Optional(f1.high)},
                {"f1_per_source", Optional(a.by_source.f1)},
+               {"false_positive_rate", Optional(f1.counts.false_positive_rate())},
+               {"agent_accuracy", Optional(a.by_source.counts.accuracy())},
+               {"named_accuracy", Optional(group.named_accuracy())},
                {"exposure_max_m", a.exposure_max_m},
                {"exposure_p95_m", a.exposure_p95_m},
                {"exposure_over_3m_s_per_run", a.harm_s},
@@ -89,6 +93,8 @@ Json AttackJson(const Group& group) {
                {"validated_ratio", Optional(group.validated_ratio)},
                {"score", Optional(a.score())},
                {"honest", HonestJson(a.honest)}};
+  if (group.gospa) json["gospa"] = GospaJson(*group.gospa);
+  if (group.warnings) json["warnings"] = WarningsJson(*group.warnings);
   if (Json field = FieldJson(group); !field.empty()) json["field"] = std::move(field);
   return json;
 }
@@ -101,6 +107,7 @@ Json EntryJson(const Group& group, bool is_attack) {
     } else {
       into["runs"] = from.attack.runs;
       into.update(HonestJson(from.attack.honest));
+      if (from.warnings) into["warnings"] = WarningsJson(*from.warnings);
     }
   };
   fill(group, entry);
@@ -197,6 +204,12 @@ std::string SummaryJson(const Summary& summary) {
   if (summary.plain) {
     json["plain"] = {{"runs", summary.plain->attack.runs}};
     json["plain"].update(HonestJson(summary.plain->attack.honest));
+    if (summary.plain->warnings) json["plain"]["warnings"] = WarningsJson(*summary.plain->warnings);
+  }
+  json["phantoms"] = PhantomsJson(summary);
+  json["attacked_warnings"] = nullptr;
+  if (summary.attacked_warnings) {
+    json["attacked_warnings"] = WarningsJson(*summary.attacked_warnings);
   }
   json["score"] = Optional(summary.score);
   json["weakest"] = summary.weakest.empty() ? Json(nullptr) : Json(summary.weakest);
@@ -238,6 +251,7 @@ std::string SummaryTable(const Summary& summary, bool field) {
            "    ours  checks   paper      ours  checks      ours   paper      ours   paper\n";
     out += Lines(summary.attacks, FieldLine);
   }
+  out += AgentsTable(summary) + WarningsTable(summary);
   out += "targets\n";
   for (const Target& target : JudgeTargets(summary)) {
     const std::string verdict = !target.value && !target.is_censored ? "not measured"

@@ -167,6 +167,10 @@ void JudgeAttacks(Judge& judge) {
                 50.0, 1, [](const Group& g) {
                   return Reading{1e-3 * g.step_max_us, false};
                 });
+  judge.Attacks("URGENT caused by a lie, ours", {"*"}, false, 0, 0, [](const Group& g) {
+    if (!g.warnings) return Reading{};
+    return Reading{1.0 * g.warnings->ours.urgent_by_lie, false};
+  });
   judge.Attacks("runs whose LOCAL digest an attack changed", {"*"}, false, 0, 0,
                 [](const Group& g) {
                   if (g.digests_compared == 0) return Reading{};

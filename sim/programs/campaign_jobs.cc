@@ -65,6 +65,9 @@ void AddOptions(CLI::App& app, Options& options) {
                "Short form: --attacks A1,A2,A3,A4 --honest none --no-plain");
   app.add_flag("--no-plain", options.no_plain,
                "Leave out the runs without attack (LOCAL is then not compared)");
+  app.add_flag(
+      "--no-warnings", options.no_warnings,
+      "Leave out what warnings three consumers would give, which takes a third of the time");
   app.add_flag("--gates", options.gates, "Exit code 1 when a target is missed or not measured");
   app.add_flag("--keep", options.keep, "Keep the log files, in OUT/tmp");
   app.add_option("--report", options.report, "Folder for index.html (made if absent)");

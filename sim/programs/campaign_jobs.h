@@ -20,7 +20,7 @@ struct Options {
   std::string out, config, report, lcm_url;
   std::vector<std::string> merge;
   bool as_json = false, field = false, keep = false, ghosts_only = false, no_plain = false;
-  bool gates = false;
+  bool gates = false, no_warnings = false;
 };
 
 void AddOptions(CLI::App& app, Options& options);

@@ -120,6 +120,7 @@ RunnerSettings SettingsOf(const Options& options, const fs::path& out) {
   const char* scratch = std::getenv("TMPDIR");
   settings.scratch = !options.keep && scratch != nullptr ? fs::path(scratch) : out / "tmp";
   settings.with_message_checks = options.field;
+  settings.with_warnings = !options.no_warnings;
   settings.keeps_logs = options.keep;
   settings.at_a_time = options.jobs;
   return settings;

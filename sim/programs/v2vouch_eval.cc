@@ -35,6 +35,7 @@ constexpr const char* kExamples =
     "  v2vouch-eval OUT.lcm --warnings             v2vouch-warn's engine on V2V alone, LOCAL, "
     "both\n"
     "                                              lists and truth, compared\n"
+    "  v2vouch-eval OUT.lcm --spoof --warnings     both\n"
     "  v2vouch-eval drive.lcm --summary            a real drive: counts, no truth needed\n"
     "  v2vouch-eval drive.lcm --report report/     a real drive: what was held when, trust, rates\n"
     "\n"
@@ -85,7 +86,32 @@ std::vector<v2vouch::evaluation::ReportPicture> PicturesOf(const std::string& lo
   return pictures;
 }
 
-int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
+std::optional<v2vouch::evaluation::WarnScore> WarningsOf(const std::string& path) {
+  using namespace v2vouch::evaluation;
+  WarnRun run;
+  std::string error;
+  if (RunWarnings(path, {}, run, error)) return JudgeWarnings(run);
+  Complain(path + ": " + error);
+  return std::nullopt;
+}
+
+// With both asked for, one JSON object: that of the lies, with `warnings` in it.
+int PrintLies(const v2vouch::evaluation::SpoofRun& run,
+              const v2vouch::evaluation::WarnScore* warnings, bool as_json) {
+  using namespace v2vouch::evaluation;
+  std::string text = as_json ? SpoofJson(run) : SpoofTable(run);
+  if (warnings != nullptr && as_json) {
+    std::string inner = WarnScoreJson(*warnings);
+    while (!inner.empty() && inner.back() == '\n') inner.pop_back();
+    text = text.substr(0, text.rfind('}')) + ",\"warnings\":" + inner + "}\n";
+  } else if (warnings != nullptr) {
+    text += "\n" + WarnScoreTable(*warnings);
+  }
+  std::fputs(text.c_str(), stdout);
+  return v2vouch::kExitGood;
+}
+
+int JudgeLies(const std::string& path, bool with_message_checks, bool with_warnings, bool as_json) {
   using namespace v2vouch::evaluation;
   RunLog log;
   if (!Load(path, log, ReadScope::kSpoof)) return v2vouch::kExitFailed;
@@ -103,8 +129,9 @@ int JudgeLies(const std::string& path, bool with_message_checks, bool as_json) {
     return v2vouch::kExitFailed;
   }
   const SpoofRun run = JudgeSpoof(log, with_message_checks);
-  std::fputs((as_json ? SpoofJson(run) : SpoofTable(run)).c_str(), stdout);
-  return v2vouch::kExitGood;
+  if (!with_warnings) return PrintLies(run, nullptr, as_json);
+  const auto warnings = WarningsOf(path);
+  return warnings ? PrintLies(run, &*warnings, as_json) : v2vouch::kExitFailed;
 }
 
 // What became of each BSM, where the log says so; null where it cannot be judged.
@@ -127,11 +154,9 @@ int PutReport(const std::string& folder, const std::string& html, const std::str
 
 int PrintWarnings(const std::string& path, bool as_json) {
   using namespace v2vouch::evaluation;
-  WarnRun run;
-  std::string error;
-  if (!RunWarnings(path, {}, run, error)) return Complain(path + ": " + error);
-  const WarnScore score = JudgeWarnings(run);
-  std::fputs((as_json ? WarnScoreJson(score) : WarnScoreTable(score)).c_str(), stdout);
+  const auto score = WarningsOf(path);
+  if (!score) return v2vouch::kExitFailed;
+  std::fputs((as_json ? WarnScoreJson(*score) : WarnScoreTable(*score)).c_str(), stdout);
   return v2vouch::kExitGood;
 }
 
@@ -222,8 +247,10 @@ int main(int argc, char** argv) {
   if (const auto code = v2vouch::ReadCommandLine(app, "v2vouch-eval", argc, argv)) return *code;
 
   const std::string& log_path = options.log_path;
+  if (options.spoof) {
+    return JudgeLies(log_path, options.message_checks, options.warnings, options.as_json);
+  }
   if (options.warnings) return PrintWarnings(log_path, options.as_json);
-  if (options.spoof) return JudgeLies(log_path, options.message_checks, options.as_json);
   RunLog log;
   if (!Load(log_path, log)) return v2vouch::kExitFailed;
   for (std::size_t k = 0; k < options.joined.size(); ++k) {

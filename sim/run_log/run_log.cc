@@ -34,7 +34,6 @@ class Reader {
   void Take(const LogEvent& event) {
     const std::string& channel = event.channel;
     if (scope_ == ReadScope::kSpoof) {
-      if (channel == "TRACKS_LOCAL" || channel == "TRACKS_V2V") return;
       if (channel == "TRUTH_BSM") return TakeBsmTruth(event);
       if (channel == "BSM_VERDICT") return TakeBsmVerdict(event);
     }

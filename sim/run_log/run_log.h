@@ -129,7 +129,7 @@ struct RunLog {
 
 enum class ReadScope {
   kAll,    ///< Everything but the messages' truths and verdicts.
-  kSpoof,  ///< What spoof scoring needs: those too, and PRIORITY as the only list.
+  kSpoof,  ///< What spoof scoring needs: those too.
 };
 
 /// Reads a recorded run: the three lists, TRUTH, SIM_SCENARIO, and the arrival times of own sensor

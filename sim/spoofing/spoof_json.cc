@@ -190,7 +190,11 @@ std::string SpoofJson(const SpoofRun& run) {
                {"by_source", FromConfusion(run.by_source)},
                {"attackers", std::move(attackers)},
                {"exposure", FromExposure(run.exposure)},
-               {"honest", FromHonest(run.honest)}};
+               {"honest", FromHonest(run.honest)},
+               {"gospa",
+                {{"local", Optional(run.gospa.local)},
+                 {"v2v", Optional(run.gospa.v2v)},
+                 {"priority", Optional(run.gospa.priority)}}}};
   if (run.checks_by_message) json["checks_by_message"] = FromConfusion(*run.checks_by_message);
   if (run.checks_by_source) json["checks_by_source"] = FromConfusion(*run.checks_by_source);
   return json.dump() + "\n";
@@ -212,6 +216,12 @@ bool ReadSpoofJson(const std::string& text, SpoofRun& run) {
     for (const Json& source : json.at("attackers")) run.attackers.push_back(ToSource(source));
     run.exposure = ToExposure(json.at("exposure"));
     run.honest = ToHonest(json.at("honest"));
+    run.gospa = {};
+    if (json.contains("gospa")) {
+      const Json& gospa = json["gospa"];
+      run.gospa = {ToOptional(gospa, "local"), ToOptional(gospa, "v2v"),
+                   ToOptional(gospa, "priority")};
+    }
     if (json.contains("checks_by_message")) {
       run.checks_by_message = ToConfusion(json["checks_by_message"]);
     }
@@ -254,6 +264,12 @@ std::string SpoofTable(const SpoofRun& run) {
   out += Line("instants outnumbered, doubled", std::to_string(e.outnumbered) + ", " +
                                                    std::to_string(e.doubled) + " of " +
                                                    std::to_string(e.instants));
+  const auto gospa = [](const std::optional<double>& v) {
+    return v ? Fixed(*v, 2) + " m" : std::string("none");
+  };
+  out +=
+      Line("GOSPA of V2V, PRIORITY, LOCAL",
+           gospa(run.gospa.v2v) + ", " + gospa(run.gospa.priority) + ", " + gospa(run.gospa.local));
   out += "honest senders\n";
   out +=
       Line("heard", std::to_string(h.senders) + " devices, " + Fixed(hours, 3) + " vehicle-hours");

@@ -2,8 +2,10 @@
 #include "sim/spoofing/spoof_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "sim/metrics/scoring.h"
 #include "sim/spoofing/message_checks.h"
 
 namespace v2vouch::evaluation {
@@ -144,6 +146,21 @@ void TakeMessageChecks(const RunLog& log, const std::vector<JudgedMessage>& judg
   run.checks_by_source = by_source;
 }
 
+ListGospa MeanGospa(const RunLog& log) {
+  ScoringSettings settings;
+  settings.period_s = 0.2;
+  const auto grid = MakeGrid(log.truth, settings);
+  if (grid.empty()) return {};
+  const Bound bound(log, grid);
+  const auto mean = [&](ListKind kind) -> std::optional<double> {
+    if (log.lists[Index(kind)].empty()) return std::nullopt;
+    const double gospa =
+        ScoreList(log, grid, bound, kind, Against::kOwnScope, settings, false).gospa_mean;
+    return std::isfinite(gospa) ? std::optional(gospa) : std::nullopt;
+  };
+  return {mean(ListKind::kLocal), mean(ListKind::kV2v), mean(ListKind::kPriority)};
+}
+
 }  // namespace
 
 void Confusion::Count(bool is_false, bool is_positive) {
@@ -174,6 +191,15 @@ std::optional<double> Confusion::f1() const {
   return Ratio(2 * true_positive, 2 * true_positive + false_positive + false_negative);
 }
 
+std::optional<double> Confusion::accuracy() const {
+  return Ratio(true_positive + true_negative,
+               true_positive + true_negative + false_positive + false_negative);
+}
+
+std::optional<double> Confusion::false_positive_rate() const {
+  return Ratio(false_positive, false_positive + true_negative);
+}
+
 SpoofRun JudgeSpoof(const RunLog& log, bool with_message_checks) {
   SpoofRun run;
   run.scenario = log.specs.name;
@@ -190,6 +216,7 @@ SpoofRun JudgeSpoof(const RunLog& log, bool with_message_checks) {
   judge.Finish(run);
   run.exposure = MeasureExposure(log, senders);
   run.honest = JudgeHonest(log, senders, judged);
+  run.gospa = MeanGospa(log);
   if (with_message_checks) TakeMessageChecks(log, judged, run.attackers, run);
   return run;
 }

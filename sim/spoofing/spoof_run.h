@@ -24,6 +24,9 @@ struct Confusion {
   [[nodiscard]] std::optional<double> recall() const;
   /// 2 TP / (2 TP + FP + FN); nothing where no message was false.
   [[nodiscard]] std::optional<double> f1() const;
+  /// Share of all that was judged rightly, and of the honest that was judged to be false.
+  [[nodiscard]] std::optional<double> accuracy() const;
+  [[nodiscard]] std::optional<double> false_positive_rate() const;
 };
 
 /// How one attacker fared.
@@ -42,6 +45,12 @@ struct SourceOutcome {
 /// Attackers with less false time in joint view than this are not counted as sources.
 inline constexpr double kSourceInView_s = 1.0;
 
+/// Mean GOSPA of a run, c = 10 m, five times a second: PRIORITY and V2V against the vehicles that
+/// send BSMs, LOCAL against all. Nothing where the log has no such list.
+struct ListGospa {
+  std::optional<double> local, v2v, priority;
+};
+
 /// All spoof figures of one run; small, so that campaigns keep one per run.
 struct SpoofRun {
   std::string scenario;
@@ -57,6 +66,7 @@ struct SpoofRun {
   std::vector<SourceOutcome> attackers;  ///< With false messages in joint view, by device.
   Exposure exposure;
   HonestTreatment honest;
+  ListGospa gospa;
   std::optional<Confusion> checks_by_message;  ///< The same for message-only checks, if asked for.
   std::optional<Confusion> checks_by_source;
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace v2vouch::evaluation {
 namespace {
@@ -29,6 +31,34 @@ struct Episode {
   Timestamp to{};
   bool is_urgent = false;
   bool is_unseen = false;  // Of PRIORITY alone when it became urgent.
+  bool is_by_lie = false;  // A liar feeds its track, and LOCAL alone did not say it.
+  bool is_urgent_by_lie = false;
+};
+
+// What LOCAL alone says of its tracks: (id, time) of WARN and above, and of URGENT.
+class LocalSays {
+ public:
+  explicit LocalSays(const std::vector<SaidWarnings>& said) {
+    for (const SaidWarnings& each : said) {
+      for (const warnings::Warning& warning : each.list.warnings) {
+        if (warning.level == Level::kLost || warning.level < Level::kWarn) continue;
+        times_[{warning.local_id, Level::kWarn}].push_back(each.at);
+        if (warning.level < Level::kUrgent) continue;
+        times_[{warning.local_id, Level::kUrgent}].push_back(each.at);
+      }
+    }
+  }
+  // Within the time in which two warnings count as the same.
+  [[nodiscard]] bool Of(const warnings::Warning& warning, Timestamp at) const {
+    const auto found = times_.find({warning.local_id, warning.level});
+    if (warning.local_id == 0 || found == times_.end()) return false;
+    const Duration slack = FromSeconds(kSameTime_s);
+    const auto next = std::ranges::lower_bound(found->second, at - slack);
+    return next != found->second.end() && *next <= at + slack;
+  }
+
+ private:
+  std::map<std::pair<std::int64_t, Level>, std::vector<Timestamp>> times_;
 };
 
 // The true vehicle next to a place of the ego's body frame at `t`.
@@ -57,29 +87,36 @@ std::int64_t ObjectAt(const Truth& truth, Timestamp t, const Eigen::Vector2d& p_
 
 bool IsActive(Level level, Level least) { return level != Level::kLost && level >= least; }
 
-std::vector<Episode> Episodes(const std::vector<SaidWarnings>& said, const Truth& truth,
-                              bool is_truth, Level least) {
+std::vector<Episode> Episodes(const std::vector<SaidWarnings>& said, Timestamp end,
+                              const Truth& truth, bool is_truth, Level least,
+                              const LocalSays* local = nullptr) {
   std::vector<Episode> episodes;
   for (const SaidWarnings& each : said) {
-    for (const warnings::Warning& warning : each.list.warnings) {
+    if (each.at > end) break;
+    for (std::size_t i = 0; i < each.list.warnings.size(); ++i) {
+      const warnings::Warning& warning = each.list.warnings[i];
       if (!IsActive(warning.level, least)) continue;
       const std::int64_t object =
           is_truth ? warning.local_id + (warning.local_id == 0 ? warning.track_id : 0)
                    : ObjectAt(truth, each.list.stamp, warning.figures.position_B);
       const bool is_urgent = warning.level == Level::kUrgent;
       const bool is_unseen = warning.source == warnings::Source::kPriority;
+      const bool is_by_lie = i < each.is_of_liar.size() && each.is_of_liar[i] &&
+                             !(local != nullptr && local->Of(warning, each.at));
       const auto known = std::find_if(episodes.rbegin(), episodes.rend(), [&](const Episode& e) {
         return GroupOf(e.kind) == GroupOf(warning.kind) && e.object == object &&
                each.at - e.to <= kMerge;
       });
       if (known == episodes.rend()) {
-        episodes.push_back(
-            {warning.kind, object, each.at, each.at, is_urgent, is_urgent && is_unseen});
+        episodes.push_back({warning.kind, object, each.at, each.at, is_urgent,
+                            is_urgent && is_unseen, is_by_lie, is_urgent && is_by_lie});
         continue;
       }
       known->to = each.at;
       if (is_urgent && !known->is_urgent) known->is_unseen = is_unseen;
       known->is_urgent = known->is_urgent || is_urgent;
+      known->is_by_lie = known->is_by_lie || is_by_lie;
+      known->is_urgent_by_lie = known->is_urgent_by_lie || (is_urgent && is_by_lie);
     }
   }
   return episodes;
@@ -106,6 +143,25 @@ Timestamp InSight(const Truth& truth, std::int64_t id) {
     }
   }
   return Timestamp::max();
+}
+
+// Whether a list could hold the vehicle at `t`: in sight for 0.3 s on end until then, or for so
+// long altogether that it could have been vouched for. A glimpse long before is neither.
+bool CouldBeListed(const Truth& truth, std::int64_t id, Timestamp t) {
+  constexpr double kVouched_s = 2.0;
+  for (const TruthObject& object : truth.objects) {
+    if (object.id != id) continue;
+    Duration seen{}, on_end{};
+    const auto& samples = object.motion.samples();
+    for (std::size_t i = 1; i < samples.size() && samples[i].stamp <= t; ++i) {
+      const Duration step = samples[i].stamp - samples[i - 1].stamp;
+      const bool is_seen = !samples[i - 1].is_hidden && !samples[i].is_hidden;
+      on_end = is_seen ? on_end + step : Duration{};
+      if (!samples[i].is_hidden) seen += step;
+    }
+    return seen >= FromSeconds(kVouched_s) || on_end >= FromSeconds(0.3);
+  }
+  return false;
 }
 
 std::optional<Timestamp> First(const std::vector<SaidWarnings>& said, Level least) {
@@ -154,7 +210,8 @@ void Compare(const WarnRun& run, const std::vector<Episode>& truth_warn,
     const double delay_s = found != nullptr ? ToSeconds(found->from - theirs.from)
                                             : std::numeric_limits<double>::infinity();
     const bool is_in_time = delay_s <= kLate_s;
-    if (!is_in_time && InSight(run.truth, theirs.object) > theirs.from - FromSeconds(kLate_s)) {
+    if (!is_in_time &&
+        !CouldBeListed(run.truth, theirs.object, theirs.from - FromSeconds(kLate_s))) {
       ++counts.unavoidable;
       continue;
     }
@@ -170,13 +227,16 @@ void Compare(const WarnRun& run, const std::vector<Episode>& truth_warn,
     const bool is_known = std::ranges::any_of(truth_warn, is_with);
     WarnCounts& counts = score.kinds[each.kind];
     if (!is_known) {
-      ++(std::ranges::any_of(truth_advise, is_with) ? counts.early : counts.false_count);
+      const bool is_early = std::ranges::any_of(truth_advise, is_with);
+      ++(is_early ? counts.early : counts.false_count);
+      counts.false_by_lie += each.is_by_lie && !is_early;
     }
     if (!each.is_urgent) continue;
     ++counts.urgent;
     if (is_known) continue;
     ++counts.urgent_false;
     counts.urgent_false_unseen += each.is_unseen;
+    counts.urgent_by_lie += each.is_urgent_by_lie;
   }
 }
 
@@ -191,14 +251,18 @@ WarnScore JudgeWarnings(const WarnRun& run) {
   score.scenario = run.scenario;
   score.seconds = run.seconds;
   score.unwarned = Simulate(run.truth, run.body, std::nullopt, kPlanner);
+  // Once the bodies touch, the drive that goes on through the other vehicle means nothing.
+  const Timestamp end = score.unwarned.has_contact ? score.unwarned.contact : Timestamp::max();
   score.truth_first_urgent_s = SecondsOf(First(run.truth_said, Level::kUrgent), run.truth);
   score.truth_first_warn_s = SecondsOf(First(run.truth_said, Level::kWarn), run.truth);
-  const auto truth_warn = Episodes(run.truth_said, run.truth, true, Level::kWarn);
-  const auto truth_advise = Episodes(run.truth_said, run.truth, true, Level::kAdvise);
+  const auto truth_warn = Episodes(run.truth_said, end, run.truth, true, Level::kWarn);
+  const auto truth_advise = Episodes(run.truth_said, end, run.truth, true, Level::kAdvise);
+  const LocalSays local(run.said[static_cast<std::size_t>(Consumer::kLocal)]);
   for (const Consumer consumer : kConsumers) {
     const auto& said = run.said[static_cast<std::size_t>(consumer)];
     ConsumerScore& each = score.consumers[static_cast<std::size_t>(consumer)];
-    Compare(run, truth_warn, truth_advise, Episodes(said, run.truth, false, Level::kWarn), each);
+    Compare(run, truth_warn, truth_advise,
+            Episodes(said, end, run.truth, false, Level::kWarn, &local), each);
     const auto urgent = First(said, Level::kUrgent);
     const auto warn = First(said, Level::kWarn);
     each.planner_brakes = urgent.has_value();

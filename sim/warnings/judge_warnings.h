@@ -13,15 +13,21 @@ namespace v2vouch::evaluation {
 
 /// Episodes at WARN or above of one consumer and kind against those of the engine on truth.
 struct WarnCounts {
-  int true_count = 0;    ///< Not later than 0.3 s after truth.
-  int late = 0;          ///< Later.
-  int missed = 0;        ///< Truth only, of a vehicle that had been in sight.
-  int unavoidable = 0;   ///< Missed or late, of a vehicle that came in sight only after that.
-  int early = 0;         ///< Ours only, where truth advises.
-  int false_count = 0;   ///< Ours only.
-  int urgent = 0;        ///< Episodes that reached URGENT.
-  int urgent_false = 0;  ///< Of these, truth says nothing from WARN on.
-  int urgent_false_unseen = 0;   ///< Of these, of vehicles that are in PRIORITY alone.
+  int true_count = 0;  ///< Not later than 0.3 s after truth.
+  int late = 0;        ///< Later.
+  int missed = 0;      ///< Truth only, of a vehicle that had been in sight.
+  /// Missed or late, of a vehicle that no list could hold by then: not in sight, nor long enough
+  /// before to be vouched for.
+  int unavoidable = 0;
+  int early = 0;                ///< Ours only, where truth advises.
+  int false_count = 0;          ///< Ours only.
+  int urgent = 0;               ///< Episodes that reached URGENT.
+  int urgent_false = 0;         ///< Of these, truth says nothing from WARN on.
+  int urgent_false_unseen = 0;  ///< Of these, of vehicles that are in PRIORITY alone.
+  /// Ours only, of a vehicle whose track a liar's messages feed, where LOCAL alone does not say the
+  /// same: caused by a lie. Of all and of those that reached URGENT.
+  int false_by_lie = 0;
+  int urgent_by_lie = 0;
   std::vector<double> delays_s;  ///< Of true and late ones.
 };
 

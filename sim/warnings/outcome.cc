@@ -105,6 +105,7 @@ Outcome Simulate(const Truth& truth, const warnings::EgoBody& body, std::optiona
         continue;
       }
       outcome.has_contact = true;
+      outcome.contact = t;
       outcome.contact_speed_mps = speed_mps;
       return outcome;
     }

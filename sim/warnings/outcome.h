@@ -18,6 +18,7 @@ inline constexpr Braking kDriver{1.2, 4.0};
 
 struct Outcome {
   bool has_contact = false;
+  Timestamp contact{};             ///< When; 1970 = none.
   double contact_speed_mps = 0.0;  ///< Of the ego, at the contact.
   double speed_lost_mps = 0.0;     ///< Against the true ego, at most.
 };

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <v2vouch/truth_bsm_t.hpp>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/base/big_endian.h"
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/warnings_wire/warnings_conversion.h"
 #include "daemon/rim/wire/codec.h"
@@ -16,6 +19,10 @@ namespace v2vouch::evaluation {
 namespace {
 
 using wire::ListOrigin;
+
+StateMatrix TrueCovariance() { return 1e-4 * StateMatrix::Identity(); }
+
+constexpr double kLinger_s = 10.0;  // A lie acts on for so long after its last message.
 
 // One warner per consumer, fed as a bus would.
 class Consumers {
@@ -35,11 +42,17 @@ class Consumers {
       for (auto& warner : warners_) warner.OnEgo(*reading);
       return;
     }
+    if (event.channel == "TRUTH_BSM") {
+      const auto truth = wire::Decode<truth_bsm_t>(event.bytes);
+      if (truth && truth->is_attack != 0) lied_[BigEndian32(truth->sender_id)] = event.received;
+      return;
+    }
     const bool is_local = event.channel == "TRACKS_LOCAL";
     const bool is_priority = event.channel == "TRACKS_PRIORITY";
     if (!is_local && !is_priority && event.channel != "TRACKS_V2V") return;
     const auto list = wire::Decode<track_list_t>(event.bytes);
     if (!list) return;
+    if (!is_local) NoteSenders(*list, is_priority ? Consumer::kOurs : Consumer::kV2v);
     if (is_local) {
       // LOCAL alone gets an empty PRIORITY, so that it answers at the same rate.
       const auto targets = wire::ToTargets(*list, ListOrigin::kLocal);
@@ -54,18 +67,38 @@ class Consumers {
     } else {
       auto targets = wire::ToTargets(*list, ListOrigin::kUnverified);
       targets.sectors = {{-kPi, kPi - 1e-3, 300.0, SectorState::kWatched}};
+      // Taken for true, as published V2V-only programs do: none of them has a covariance.
+      for (auto& target : targets.targets) target.state_O.covariance = TrueCovariance();
       Say(Consumer::kV2v, event.received, At(Consumer::kV2v).OnPriority(targets));
     }
   }
 
  private:
   warnings::Warner& At(Consumer c) { return warners_[static_cast<std::size_t>(c)]; }
+  void NoteSenders(const track_list_t& list, Consumer c) {
+    auto& senders = senders_[static_cast<std::size_t>(c)];
+    for (const track_t& track : list.tracks) senders[track.id] = BigEndian32(track.v2v_id);
+  }
+  [[nodiscard]] bool IsOfLiar(Consumer c, const warnings::Warning& warning, Timestamp at) const {
+    const auto& senders = senders_[static_cast<std::size_t>(c)];
+    const auto sender = senders.find(warning.track_id);
+    if (warning.track_id == 0 || sender == senders.end()) return false;
+    const auto lied = lied_.find(sender->second);
+    return lied != lied_.end() && at - lied->second <= FromSeconds(kLinger_s);
+  }
   void Say(Consumer c, Timestamp at, std::optional<warnings::WarningList> list) {
-    if (list) run_.said[static_cast<std::size_t>(c)].push_back({at, std::move(*list)});
+    if (!list) return;
+    SaidWarnings said{at, std::move(*list)};
+    for (const auto& warning : said.list.warnings) {
+      said.is_of_liar.push_back(IsOfLiar(c, warning, at));
+    }
+    run_.said[static_cast<std::size_t>(c)].push_back(std::move(said));
   }
 
   WarnRun& run_;
   std::array<warnings::Warner, 3> warners_;
+  std::array<std::map<std::int64_t, std::uint32_t>, 3> senders_;  // By id of the track.
+  std::map<std::uint32_t, Timestamp> lied_;                       // Last lie under each id.
 };
 
 warnings::TargetList TruthAt(const Truth& truth, Timestamp t, const PlanarMotion& ego) {
@@ -83,7 +116,7 @@ warnings::TargetList TruthAt(const Truth& truth, Timestamp t, const PlanarMotion
     target.source = warnings::Source::kPriority;
     target.state_O.mean << motion->x_m, motion->y_m, motion->yaw_rad, motion->speed_mps,
         motion->yaw_rate_radps, motion->accel_mps2;
-    target.state_O.covariance = 1e-4 * StateMatrix::Identity();
+    target.state_O.covariance = TrueCovariance();
     target.extent = {object.length_m, object.width_m, 0.01, 0.01};
     target.last_own = t;
     list.targets.push_back(target);

@@ -20,6 +20,8 @@ const char* ConsumerKey(Consumer consumer);  ///< "v2v", "local", "ours".
 struct SaidWarnings {
   Timestamp at{};  ///< When the list that led to it was received; of truth: its own time.
   warnings::WarningList list;
+  /// By warning of the list: the vehicle's track is that of a sender that lied within kLinger_s.
+  std::vector<bool> is_of_liar{};
 };
 
 struct WarnRun {
@@ -35,7 +37,8 @@ struct WarnRun {
 /// within the next 17 m and one second, as Euro NCAP's indicator 1 s before the curve.
 warnings::EgoIntent IntentFromTruth(const Truth& truth, Timestamp t);
 
-/// Reads a replayed log and runs the engine four times. V2V alone is TRACKS_V2V taken for true.
+/// Reads a replayed log and runs the engine four times. V2V alone is TRACKS_V2V taken for true,
+/// without covariance.
 /// @return false with `error` set where the log holds no TRUTH or no lists.
 bool RunWarnings(const std::string& path, const warnings::WarningsConfig& config, WarnRun& run,
                  std::string& error);

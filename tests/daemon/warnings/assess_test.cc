@@ -21,7 +21,7 @@ std::optional<Warning> Only(const Scene& scene) {
 }
 
 TEST(Assess, StandingCarAheadRisesFromAdviseToUrgent) {
-  // 15 m/s; bumper 3.75 m, rear at x - 2 m. WARN before 1.2 + 15/8 = 3.08 s, URGENT 1.44 s.
+  // 15 m/s; bumper 3.75 m, rear at x - 2 m. WARN before 15/4.4 = 3.41 s, URGENT 1.44 s.
   EXPECT_EQ(Only(SceneOf(Driving(15.0), {Car(1, 75.0, 0, 0, 0)}))->level, Level::kAdvise);
   EXPECT_EQ(Only(SceneOf(Driving(15.0), {Car(1, 48.0, 0, 0, 0)}))->level, Level::kWarn);
   const auto urgent = Only(SceneOf(Driving(15.0), {Car(1, 23.0, 0, 0, 0)}));
@@ -30,6 +30,18 @@ TEST(Assess, StandingCarAheadRisesFromAdviseToUrgent) {
   EXPECT_NEAR(urgent->figures.required_decel_mps2, 225.0 / 2 / 17.25, 0.1);
   EXPECT_GT(urgent->figures.conflict_probability, 0.9);
   EXPECT_NEAR(urgent->figures.own_sensor_age_s, 0.0, 1e-9);
+}
+
+TEST(Assess, StandingCarIsWarnedOfWithAMarginOnlyWhereUsualBrakingWouldHaveBegun) {
+  // 20 m/s: needed 1.2 + 20/8 = 3.7 s, usual braking from 20/4.4 = 4.5 s on: margin 0.5 s.
+  EXPECT_NEAR(Only(SceneOf(Driving(20.0), {Car(1, 90.0, 0, 0, 0)}))->figures.warn_before_s, 4.2,
+              1e-9);
+  // 14 m/s: needed 2.95 s, usual 3.18 s.
+  EXPECT_NEAR(Only(SceneOf(Driving(14.0), {Car(1, 50.0, 0, 0, 0)}))->figures.warn_before_s,
+              14.0 / 4.4, 1e-9);
+  // 8 m/s: needed 2.2 s; usual braking begins after that: none.
+  EXPECT_NEAR(Only(SceneOf(Driving(8.0), {Car(1, 24.0, 0, 0, 0)}))->figures.warn_before_s, 2.2,
+              1e-9);
 }
 
 TEST(Assess, EgoThatBrakesEnoughIsNotWarned) {
@@ -45,6 +57,20 @@ TEST(Assess, LeadThatBrakesWarnsBeforeTheClosingSpeedTells) {
   EXPECT_EQ(found[0].warning.kind, Kind::kFcw);
   EXPECT_EQ(found[1].warning.kind, Kind::kEebl);
   EXPECT_EQ(found[1].warning.level, Level::kWarn);
+}
+
+TEST(Assess, LeadThatBrakesHardIsUrgentWhileAPlannerCanStillStopBehindIt) {
+  // Both at 20 m/s, 20 m from bumper to bumper, the lead brakes with 5 m/s2 since 1.2 s: 14 m/s,
+  // 16.4 m. Braking with 8 m/s2 from 0.5 s on still leaves a gap; from about 0.8 s on none.
+  const auto urgent = [](double gap_m, double lead_mps) {
+    Target lead = Car(1, gap_m + 3.75 + 2.0, 0, 0, lead_mps);
+    lead.state_O.mean[kAccel] = -5.0;
+    const auto found = Assess(SceneOf(Driving(20.0), {lead}), {}, {});
+    return !found.empty() && found[0].warning.level == Level::kUrgent;
+  };
+  // Stopping from 20 m/s takes 25 m and 0.5 s of reaction 10 m; the lead's 14 m/s 19.6 m.
+  EXPECT_FALSE(urgent(19.0, 14.0));
+  EXPECT_TRUE(urgent(14.0, 14.0));
 }
 
 TEST(Assess, StandingCarInTheOuterLaneOfABendIsNotInThePath) {

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
+#include <vector>
 
 #include "daemon/common/base/angle.h"
 
@@ -173,6 +176,103 @@ TEST(PlaceOnPath, IsSymmetricAndFollowsTheArc) {
   EXPECT_NEAR(mirrored.left_m, 2.0, 1e-9);
   EXPECT_NEAR(mirrored.along_m, place.along_m, 1e-9);
   EXPECT_NEAR(mirrored.yaw_rad, -kPi / 2, 1e-9);
+}
+
+// The draws one after the other, each predicted to its end: what the lanes must give to the bit.
+Conflict DrawByDraw(const EgoFan& ego, const BodyTarget& target, const StateMatrix& root,
+                    const WarningsConfig& config) {
+  std::vector<double> wide, exact;
+  Conflict out;
+  Motion other;
+  for (const Draw& draw : NormalDraws()) {
+    const Eigen::Matrix<double, 6, 1> z =
+        Eigen::Map<const Eigen::Matrix<double, 6, 1>>(draw.data());
+    PredictTarget(target.mean + root * z, false, ego.steps(), other);
+    const Motion& own = ego.Of(draw[6], draw[7]);
+    bool has_touched = false;
+    for (std::size_t k = 0; k < other.size(); ++k) {
+      const double t_s = kStep_s * static_cast<double>(k);
+      if (!Touch(own[k], ego.wide(), other[k], target.size)) continue;
+      if (!has_touched) wide.push_back(t_s);
+      const bool is_near = z.squaredNorm() <= config.hidden_sigmas * config.hidden_sigmas;
+      if (!has_touched && is_near && !(out.reachable_s <= t_s)) out.reachable_s = t_s;
+      has_touched = true;
+      if (!Touch(own[k], ego.exact(), other[k], target.size)) continue;
+      exact.push_back(t_s);
+      break;
+    }
+  }
+  const auto at = [](std::vector<double>& v, double share) {
+    std::ranges::sort(v);
+    return v.empty() ? kNaN
+                     : v[static_cast<std::size_t>(share * static_cast<double>(v.size() - 1) + 0.5)];
+  };
+  out.probability = static_cast<double>(wide.size()) / kDrawCount;
+  out.probability_exact = static_cast<double>(exact.size()) / kDrawCount;
+  out.early_s = at(wide, 0.1);
+  out.median_s = at(wide, 0.5);
+  out.exact_median_s = at(exact, 0.5);
+  return out;
+}
+
+TEST(AssessConflict, GivesToTheBitWhatOneDrawAfterTheOtherGives) {
+  std::mt19937_64 rng(11);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  int touching = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    EgoPlan plan;
+    plan.speed_mps = 10.0 + 9.0 * u(rng);
+    plan.curvature_per_m = 0.03 * u(rng);
+    const EgoFan ego(plan, {0.3, 0.02}, {}, {});
+    BodyTarget target = TargetAt(30.0 + 28.0 * u(rng), 15.0 * u(rng), kPi * u(rng),
+                                 trial % 4 == 0 ? 0.1 * u(rng) : 12.0 * u(rng));
+    target.mean[kYawRate] = 0.2 * u(rng);
+    target.mean[kAccel] = trial % 2 == 0 ? 0.9 * u(rng) : 3.0 * std::abs(u(rng));
+    // A covariance whose square root is the same by any method.
+    target.covariance = 0.09 * StateMatrix::Identity();
+    const StateMatrix root = 0.3 * StateMatrix::Identity();
+    const Conflict lanes = AssessConflict(ego, target, {});
+    const Conflict plain = DrawByDraw(ego, target, root, {});
+    if (lanes.probability == 0.0) {
+      EXPECT_EQ(plain.probability, 0.0);
+      continue;
+    }
+    ++touching;
+    EXPECT_EQ(lanes.probability, plain.probability) << trial;
+    EXPECT_EQ(lanes.probability_exact, plain.probability_exact) << trial;
+    EXPECT_TRUE(same(lanes.reachable_s, plain.reachable_s)) << trial;
+    EXPECT_TRUE(same(lanes.early_s, plain.early_s)) << trial;
+    EXPECT_TRUE(same(lanes.median_s, plain.median_s)) << trial;
+    EXPECT_TRUE(same(lanes.exact_median_s, plain.exact_median_s)) << trial;
+  }
+  EXPECT_GT(touching, 20);
+}
+
+TEST(TargetLanes, GoAsPredictTargetDoesToTheBit) {
+  std::mt19937_64 rng(5);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (const bool keeps_braking : {false, true}) {
+    for (int trial = 0; trial < 50; ++trial) {
+      std::array<StateVector, TargetLanes::kLanes> states;
+      std::array<Motion, TargetLanes::kLanes> plain;
+      for (std::size_t i = 0; i < states.size(); ++i) {
+        states[i] << 50.0 * u(rng), 50.0 * u(rng), 3.0 * u(rng), (i % 3 == 0 ? 0.6 : 15.0) * u(rng),
+            0.3 * u(rng), 4.0 * u(rng);
+        PredictTarget(states[i], keeps_braking, 60, plain[i]);
+      }
+      TargetLanes lanes(states, keeps_braking);
+      const double furthest_m = lanes.FurthestIn(6.0);
+      for (std::size_t k = 0; k <= 60; ++k) {
+        for (std::size_t i = 0; i < states.size(); ++i) {
+          EXPECT_EQ(lanes.At(i).centre, plain[i][k].centre);
+          EXPECT_EQ(lanes.At(i).along, plain[i][k].along);
+          EXPECT_LE((plain[i][k].centre - plain[i][0].centre).norm(), furthest_m + 1e-9);
+        }
+        lanes.Step();
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -147,6 +147,73 @@ TEST(SummaryJson, HasTheFieldsThatWereAgreed) {
   EXPECT_TRUE(json.contains("score"));
 }
 
+evaluation::WarnTally Warned(int lies_v2v, int lies_ours) {
+  evaluation::WarnTally tally;
+  tally.runs = 1;
+  tally.v2v.urgent_by_lie = tally.v2v.urgent_false = lies_v2v;
+  tally.ours.urgent_by_lie = tally.ours.urgent_false = lies_ours;
+  return tally;
+}
+
+TEST(Summary, HasTheWarningsOfThreeConsumersForEveryAttack) {
+  RunRecord a = Attack("A1", "ahead_15m", 1, 1.0), b = Attack("A1", "ahead_30m", 1, 1.0);
+  a.warnings = Warned(3, 0);
+  b.warnings = Warned(1, 0);
+  const Summary s = Summarise({a, b});
+  ASSERT_TRUE(s.attacks[0].warnings);
+  EXPECT_EQ(s.attacks[0].warnings->runs, 2);
+  EXPECT_EQ(s.attacks[0].warnings->v2v.urgent_by_lie, 4);
+  EXPECT_EQ(s.attacked_warnings->v2v.urgent_by_lie, 4);
+  const auto json = nlohmann::json::parse(SummaryJson(s));
+  const auto& warnings = json.at("attacks").at(0).at("variants").at(0).at("warnings");
+  for (const char* consumer : {"v2v", "local", "ours"}) {
+    for (const char* key : {"true", "late", "false", "missed", "urgent_by_lie", "planner_contacts",
+                            "driver_contacts", "planner_needless", "driver_needless"}) {
+      EXPECT_TRUE(warnings.at(consumer).contains(key)) << consumer << " " << key;
+    }
+  }
+  EXPECT_EQ(warnings.at("v2v").at("urgent_by_lie"), 3);
+  EXPECT_THAT(SummaryTable(s, false), HasSubstr("V2V alone"));
+  EXPECT_THAT(ReportHtml(s), HasSubstr("<h2>Warnings</h2>"));
+  EXPECT_TRUE(Find(JudgeTargets(s), "URGENT caused by a lie")->is_met());
+  a.warnings = Warned(3, 1);
+  EXPECT_FALSE(Find(JudgeTargets(Summarise({a, b})), "URGENT caused by a lie")->is_met());
+  EXPECT_FALSE(
+      Find(JudgeTargets(Summarise({Attack("A1", "ahead_15m", 1, 1.0)})), "URGENT caused by a lie")
+          ->value);
+}
+
+TEST(Summary, ComparesGospaWithTheSameRunWithoutAttack) {
+  RunRecord plain = Record(Kind::kPlain, "", "", 1);
+  RunRecord attacked = Attack("A1", "ahead_15m", 1, 1.0);
+  plain.ours.gospa = {10.0, 2.0, 3.0};
+  attacked.ours.gospa = {10.0, 6.0, 3.2};
+  const Summary s = Summarise({plain, attacked, Attack("A1", "ahead_15m", 2, 1.0)});
+  const auto& gospa = s.attacks[0].gospa;
+  ASSERT_TRUE(gospa);
+  EXPECT_EQ(gospa->runs, 1);
+  EXPECT_NEAR(*gospa->averted(), 0.95, 1e-9);
+  const auto json = nlohmann::json::parse(SummaryJson(s)).at("attacks").at(0).at("gospa");
+  EXPECT_NEAR(json.at("v2v").at("ratio").get<double>(), 3.0, 1e-9);
+  EXPECT_NEAR(json.at("local").at("ratio").get<double>(), 1.0, 1e-9);
+}
+
+TEST(Summary, SaysHowWellAttackersAndPhantomsAreNamed) {
+  RunRecord ghost = Attack("A1", "ahead_15m", 1, 1.0);
+  ghost.ours.attackers[0].accused_after_s = 2.0;
+  ghost.ours.honest.senders = 9;
+  ghost.ours.honest.accused = 1;
+  ghost.ours.by_source = {1, 1, 0, 8};
+  const Summary s = Summarise({ghost, Attack("A5", "lateral_8m", 1, std::nullopt)});
+  EXPECT_NEAR(*s.attacks[0].named_accuracy(), 0.9, 1e-9);
+  EXPECT_NEAR(*s.phantom_messages.recall(), 0.99, 1e-9);
+  EXPECT_EQ(s.phantom_messages.true_positive, 99);  // A5 is no phantom.
+  const auto json = nlohmann::json::parse(SummaryJson(s));
+  EXPECT_NEAR(json.at("attacks").at(0).at("agent_accuracy").get<double>(), 0.9, 1e-9);
+  EXPECT_NEAR(json.at("phantoms").at("by_source").at("false_positive_rate").get<double>(), 1.0 / 9,
+              1e-9);
+}
+
 TEST(Report, ShowsEveryAttackOnceInItsFamilyAndIsSelfContained) {
   RunRecord drift = Attack("A7", "lateral_0.5mps", 1, 3.0, 2.0);
   drift.ours.exposure.curve_m = {0.0, 2.0};

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "sim/warnings/warn_tally.h"
+
 namespace v2vouch::evaluation {
 namespace {
 
@@ -88,6 +90,27 @@ TEST(JudgeWarnings, NeverSeenUntilThenIsUnavoidable) {
   EXPECT_EQ(Of(score, Consumer::kOurs).missed, 0);
 }
 
+TEST(JudgeWarnings, AGlimpseLongBeforeIsNoSight) {
+  Truth truth = Drive(80.0, 3.0);
+  MotionSamples with_glimpse;
+  for (TruthSample sample : truth.objects[0].motion.samples()) {
+    const double t = ToSeconds(sample.stamp - kStart);
+    if (t > 0.5 && t < 1.0) sample.is_hidden = false;
+    with_glimpse.Add(sample);
+  }
+  truth.objects[0].motion = with_glimpse;
+  EXPECT_EQ(Of(JudgeWarnings(RunOf(truth)), Consumer::kOurs).unavoidable, 1);
+}
+
+TEST(JudgeWarnings, WhatIsSaidAfterTheContactDoesNotCount) {
+  WarnRun run = RunOf(Drive());  // Contact at 4.9 s.
+  Say(run.said[2], 2.0, 4.5, Level::kWarn, 80.0);
+  Say(run.said[2], 5.2, 5.9, Level::kUrgent, 140.0);
+  const WarnScore score = JudgeWarnings(run);
+  EXPECT_EQ(Of(score, Consumer::kOurs).true_count, 1);
+  EXPECT_EQ(Of(score, Consumer::kOurs).urgent_false, 0);
+}
+
 TEST(JudgeWarnings, ShortPausesAreOneEpisode) {
   WarnRun run = RunOf(Drive());
   Say(run.said[2], 2.0, 3.0, Level::kWarn, 80.0);
@@ -125,6 +148,60 @@ TEST(JudgeWarnings, BrakingWithoutNeedIsNamed) {
   const std::string json = WarnScoreJson(JudgeWarnings(run));
   EXPECT_NE(json.find("\"needless\":true"), std::string::npos);
   EXPECT_NE(json.find("\"contact_unwarned\":false"), std::string::npos);
+}
+
+// Marks all that was said as of a track that a liar's messages feed.
+void MarkAsOfLiar(std::vector<SaidWarnings>& said) {
+  for (SaidWarnings& each : said) each.is_of_liar.assign(each.list.warnings.size(), true);
+}
+
+TEST(JudgeWarnings, OfALiarsTrackIsALieUnlessLocalAloneSaysTheSame) {
+  WarnRun run = RunOf(Drive());
+  run.truth_said.clear();
+  for (auto& said : run.said) Say(said, 2.0, 3.0, Level::kUrgent, 60.0);  // Nothing is there.
+  MarkAsOfLiar(run.said[0]);
+  MarkAsOfLiar(run.said[2]);
+  for (SaidWarnings& each : run.said[0]) each.list.warnings.front().local_id = 0;
+  WarnScore score = JudgeWarnings(run);
+  EXPECT_EQ(Of(score, Consumer::kV2v).urgent_by_lie, 1);
+  EXPECT_EQ(Of(score, Consumer::kV2v).false_by_lie, 1);
+  EXPECT_EQ(Of(score, Consumer::kLocal).urgent_by_lie, 0);
+  EXPECT_EQ(Of(score, Consumer::kOurs).urgent_false, 1);
+  EXPECT_EQ(Of(score, Consumer::kOurs).urgent_by_lie, 0);
+  run.said[1].clear();
+  score = JudgeWarnings(run);
+  EXPECT_EQ(Of(score, Consumer::kOurs).urgent_by_lie, 1);
+}
+
+TEST(JudgeWarnings, AWarningThatTruthGivesTooIsNoLie) {
+  WarnRun run = RunOf(Drive());
+  Say(run.said[0], 2.1, 5.0, Level::kUrgent, 80.0);
+  MarkAsOfLiar(run.said[0]);
+  const WarnScore score = JudgeWarnings(run);
+  EXPECT_EQ(Of(score, Consumer::kV2v).true_count, 1);
+  EXPECT_EQ(Of(score, Consumer::kV2v).urgent_by_lie, 0);
+}
+
+TEST(WarnTally, AddsUpWhatTheRunsSay) {
+  WarnRun run = RunOf(Drive(500.0));
+  run.truth_said.clear();
+  Say(run.said[0], 2.0, 3.0, Level::kUrgent, 60.0);
+  for (SaidWarnings& each : run.said[0]) each.list.warnings.front().local_id = 0;
+  MarkAsOfLiar(run.said[0]);
+  WarnTally one, sum;
+  ASSERT_TRUE(ReadWarnTally(WarnScoreJson(JudgeWarnings(run)), one));
+  sum.Add(one);
+  sum.Add(one);
+  EXPECT_EQ(sum.runs, 2);
+  EXPECT_EQ(sum.contacts_unwarned, 0);
+  EXPECT_EQ(sum.v2v.urgent_by_lie, 2);
+  EXPECT_EQ(sum.v2v.runs_by_lie, 2);
+  EXPECT_EQ(sum.v2v.planner_needless, 2);
+  EXPECT_GT(sum.v2v.speed_lost_mps, 2.0);
+  EXPECT_EQ(sum.ours.urgent_by_lie, 0);
+  EXPECT_FALSE(sum.ours.delay_p95_s());
+  EXPECT_FALSE(ReadWarnTally("{}", one));
+  EXPECT_FALSE(ReadWarnTally("no figures", one));
 }
 
 TEST(IntentFromTruth, SignalsBeforeTheTurnAndNotOnAStraightRoad) {
