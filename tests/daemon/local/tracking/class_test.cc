@@ -77,6 +77,30 @@ Name First(ObjectClass first, ObjectClass then) {
   return [=](int picture) { return picture < 3 ? first : then; };
 }
 
+// As it turns it shows its flank before its returns tell the new heading: that makes no lorry of
+// it.
+TEST(ClassName, ACarThatTurnsFarAwayKeepsItsLength) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    for (const double turn_radps : {-0.45, 0.45}) {
+      Scene scene(seed);
+      scene.cars.push_back({.p_W = {40.0, 2.0}, .speed_mps = 4.3});
+      Tracker tracker(TrackerConfig{}, scene.vehicle);
+      double longest_m = 0.0;
+      for (int step = 0; step < 200; ++step) {
+        scene.cars[0].yaw_rate_radps = step > 100 && step < 180 ? turn_radps : 0.0;
+        scene.Advance(kStep_s);
+        scene.Radar(tracker);
+        if (step % 2 == 1) scene.Camera(tracker);
+        if (const LocalTrack* track = Scene::Find(tracker, scene.cars[0])) {
+          longest_m = std::max(longest_m, track->extent.length_m);
+        }
+      }
+      EXPECT_LT(longest_m, 6.0) << "seed " << seed << ", " << turn_radps;
+      EXPECT_GT(longest_m, 3.0);
+    }
+  }
+}
+
 struct Vehicle {
   const char* what;
   Car car;

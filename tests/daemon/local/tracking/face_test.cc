@@ -86,7 +86,8 @@ TEST(NearFace, ReturnsBehindItScanAfterScanMoveACarThatDrives) {
   pose.y_m = 0.0;
   pose.yaw_rad = kPi;
   pose.speed_mps = 0.0;
-  pose.covariance = (Eigen::Matrix<double, 5, 1>() << 0.02, 0.02, 1e-3, 0.01, 1e-3).finished().asDiagonal();
+  pose.covariance =
+      (Eigen::Matrix<double, 5, 1>() << 0.02, 0.02, 1e-3, 0.01, 1e-3).finished().asDiagonal();
   VehicleFilter filter;
   filter.StartAt(pose, {4.6, 1.85, 0.8, 0.2});
   for (int scan = 0; scan < 60; ++scan) {

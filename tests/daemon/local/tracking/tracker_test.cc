@@ -123,6 +123,28 @@ TEST(Tracker, VisibleButMissingFallsHiddenIsHeld) {
   }
 }
 
+// An echo that shows in one scan of five, where radar and camera both see clearly, is no vehicle: a
+// hit is no independent proof of what reflected before.
+TEST(Tracker, WhatShowsInAFifthOfTheFramesIsListedNoLonger) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    Scene scene(seed);
+    scene.detection_probability = 1.0;
+    scene.cars.push_back({.p_W = {30.0, 0.0}, .speed_mps = 10.0});
+    scene.ego.speed_mps = 10.0;
+    Tracker tracker(TrackerConfig{}, scene.vehicle);
+    Drive(scene, tracker, 40, 40, true, [](int) {});
+    ASSERT_EQ(Scene::Confirmed(tracker), 1);
+    for (int step = 0; step < 30; ++step) {  // 1.5 s
+      scene.Advance(0.05);
+      scene.cars[0].is_absent = step % 5 != 0;
+      scene.Radar(tracker);
+      scene.cars[0].is_absent = true;
+      if (step % 2 == 1) scene.Camera(tracker);
+    }
+    EXPECT_EQ(Scene::Confirmed(tracker), 0) << "seed " << seed;
+  }
+}
+
 TEST(Tracker, CarThatStopsIsKeptByStandingClustersAndKeepsItsYaw) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     Scene scene(seed);
