@@ -24,15 +24,6 @@ namespace {
 constexpr double kSlice_s = 1.0;
 constexpr double kTruthPeriod_s = 0.05;
 
-// Measurement times of a periodic source: k * period + phase, k = 0, 1, ...
-struct Ticks {
-  double period_s = 0.1;
-  double phase_s = 0.0;
-  std::int64_t next = 0;
-
-  [[nodiscard]] double time_s() const { return static_cast<double>(next) * period_s + phase_s; }
-};
-
 // Sources of one kind start a little apart, as free-running sensors do.
 double Phase(std::size_t index, double offset_s, double period_s) {
   return std::fmod(offset_s + 0.0131 * static_cast<double>(index), period_s);
@@ -48,6 +39,15 @@ std::string ChannelOf(const ObjectSensorConfig& source) { return "OBJECTS_" + so
 }  // namespace
 
 struct Simulation::State {
+  // Measurement times of a periodic source: k * period + phase, k = 0, 1, ...
+  struct Ticks {
+    double period_s = 0.1;
+    double phase_s = 0.0;
+    std::int64_t next = 0;
+
+    [[nodiscard]] double time_s() const { return static_cast<double>(next) * period_s + phase_s; }
+  };
+
   template <class Simulator, class Config, class WireType>
   struct Source {
     using Message = WireType;

@@ -59,6 +59,12 @@ class TrackFilter {
   /// velocity.
   bool Update(const BoxMeasurement& measurement);
 
+  /// Which way what stands there most likely faces; of no account to a point or what was seen
+  /// driving.
+  void FaceTowards(double yaw_rad) {
+    if (is_vehicle_) vehicle_.FaceTowards(yaw_rad);
+  }
+
   /// Takes the class's typical size for dimensions without a measurement.
   void SetClass(ObjectClass object_class);
 

@@ -54,6 +54,9 @@ constexpr double kLeastHold_s = 0.3;
 constexpr double kCoastingSince_s = 0.5;
 // In view, a vehicle is missed for no longer than this.
 constexpr double kOverdue_s = 0.7;
+// What is faster than this drives along its lane; what is shorter than this walks or cycles.
+constexpr double kDrives_mps = 3.0;
+constexpr double kWalks_m = 2.0;
 constexpr std::size_t kMostBoxes = 128;
 // More that are not listed are not kept: every one of them costs as much as a vehicle.
 constexpr std::size_t kMostGuesses = 128;
@@ -363,6 +366,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
   }
   StartFromRadar(look, radar, measurements);
   KeepReturns(look, radar, measurements);
+  LearnRoad(ego);
   Conclude(since_update_s_);
 }
 
@@ -517,6 +521,7 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
   }
   LookThrough(look, measurements);
   StartFromCamera(look, camera, measurements);
+  LearnRoad(ego);
   Conclude(since_update_s_);
 }
 
@@ -603,12 +608,40 @@ bool Tracker::Start(const TrackFilter& filter, SensorKey sensor, std::size_t ind
   return true;
 }
 
+// Ways of those that drive, the ego's among them.
+void Tracker::LearnRoad(const EgoState& ego) {
+  if (ego.speed_mps > kDrives_mps) {
+    roads_.Note(ego.X_OB.origin().vector(), ego.X_OB.yaw_rad());
+  }
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const LocalTrack& track = tracks_[i];
+    if (!track.is_confirmed || !hidden_[i].filter.has_driven()) continue;
+    if (hidden_[i].last_hit != now_ || ClassExtent(track.object_class).length_m < kWalks_m)
+      continue;
+    const Eigen::Vector2d velocity = hidden_[i].filter.velocity_O();
+    if (velocity.norm() < kDrives_mps) continue;
+    roads_.Note(hidden_[i].filter.position_O(), std::atan2(velocity.y(), velocity.x()));
+  }
+}
+
+void Tracker::FaceAsTheRoad(std::size_t track) {
+  TrackFilter& filter = hidden_[track].filter;
+  if (filter.has_driven() || !filter.is_vehicle() || settings_.point_targets ||
+      hidden_[track].last_hit != now_)
+    return;
+  const double axis_rad = tracks_[track].state_O.mean[kYaw];
+  if (const auto yaw = roads_.DirectionAt(filter.position_O(), axis_rad)) {
+    filter.FaceTowards(*yaw);
+  }
+}
+
 // Shows the new states, confirms, ends and puts in order.
 void Tracker::Conclude(double dt_s) {
   since_update_s_ = 0.0;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     LocalTrack& track = tracks_[i];
     Hidden& hidden = hidden_[i];
+    FaceAsTheRoad(i);
     hidden.filter.Show(settings_, track);
     if (!track.state_O.mean.allFinite() || !track.state_O.covariance.allFinite()) {
       failures_.push_back(Reason::kTrackNumerics);

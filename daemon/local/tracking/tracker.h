@@ -21,6 +21,7 @@
 #include "daemon/local/tracking/crowd_shape.h"
 #include "daemon/local/tracking/existence.h"
 #include "daemon/local/tracking/glances.h"
+#include "daemon/local/tracking/road_directions.h"
 #include "daemon/local/tracking/track_filter.h"
 
 namespace v2vouch {
@@ -295,6 +296,8 @@ class Tracker {
   [[nodiscard]] bool Borrows(std::size_t i, std::size_t j) const;
   [[nodiscard]] bool IsInAnothersBox(std::size_t i, const Eigen::Vector2d& p_O) const;
   [[nodiscard]] bool IsConvincing(std::size_t track) const;
+  void LearnRoad(const EgoState& ego);
+  void FaceAsTheRoad(std::size_t track);
   void Conclude(double dt_s);
   void DropUnlikely();
   void RemoveDead();
@@ -309,6 +312,7 @@ class Tracker {
   std::vector<LocalTrack> tracks_;
   std::vector<Hidden> hidden_;
   std::vector<RecentReturn> recent_;  // Of each radar's last scans.
+  RoadDirections roads_;
   std::vector<SensorUpdate> updates_;
   std::vector<PoseUpdate> pose_updates_;
   std::vector<Reason> failures_;

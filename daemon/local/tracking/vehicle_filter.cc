@@ -56,6 +56,8 @@ constexpr std::array<double, VehicleFilter::kMostAxes> kAxisTurn_rad = {0.0, kPi
 constexpr double kAxisSigma_rad = 0.25;
 constexpr double kLeastWeight = 0.005;
 constexpr double kSameAxis_rad = 0.1;
+// Across the road either end may be the front.
+constexpr double kSurelyTurned_rad = 0.6;
 // Driving forwards or backwards is no longer in doubt.
 constexpr double kDriving_mps = 1.0;
 constexpr double kDrivingSigmas = 3.0;
@@ -559,6 +561,16 @@ void VehicleFilter::TurnRound() {
   has_driven_ = true;
   for (std::size_t i = 0; i < count_; ++i) {
     if (components_[i].state.mean[kSpeed] < 0.0) FaceAbout(components_[i].state);
+  }
+}
+
+void VehicleFilter::FaceTowards(double yaw_rad) {
+  if (has_driven_) return;
+  for (std::size_t i = 0; i < count_; ++i) {
+    ExtendedState& state = components_[i].state;
+    if (std::abs(AngleDifference(state.mean[kYaw], yaw_rad)) > 0.5 * kPi + kSurelyTurned_rad) {
+      FaceAbout(state);
+    }
   }
 }
 

@@ -71,6 +71,8 @@ class VehicleFilter {
   /// turn boxes by a quarter or cut them short.
   [[nodiscard]] std::optional<Likelihood> Evaluate(const BoxMeasurement& z) const;
   bool Update(const BoxMeasurement& z);
+  /// Not seen in motion yet: its front is taken to be the end towards `yaw_rad`.
+  void FaceTowards(double yaw_rad);
   void AssumeSpeed(double speed_mps, double sigma_mps);
   /// One axis is left, and its front is known.
   [[nodiscard]] bool knows_direction() const { return count_ == 1 && has_driven_; }
@@ -105,9 +107,7 @@ class VehicleFilter {
   void NoteDepth(const RadarMeasurement& z, const Linearized& model);
   void NoteDepth(const CameraMeasurement&, const Linearized&) {}
   [[nodiscard]] bool IsOffFace(const RadarMeasurement& z, const Linearized& model) const;
-  [[nodiscard]] bool IsOffFace(const CameraMeasurement&, const Linearized&) const {
-    return false;
-  }
+  [[nodiscard]] bool IsOffFace(const CameraMeasurement&, const Linearized&) const { return false; }
   void Reopen(bool is_larger, const Eigen::Vector2d& seen_from_O);
   void Weigh(std::span<const double> log_likelihoods);
   void TurnRound();
