@@ -182,4 +182,23 @@ void EventList::TakeWarnings(const warning_list_t& list, std::int64_t at) {
   warnings_ = std::move(now);
 }
 
+const char* TrustInWords(int trust) {
+  switch (trust) {
+    case track_t::TRUST_UNKNOWN:
+      return "heard; not compared with any track";
+    case track_t::TRUST_CANDIDATE:
+      return "agrees with a track so far; not validated";
+    case track_t::TRUST_VALIDATED:
+      return "the sensors see its vehicle where it says";
+    case track_t::TRUST_BRIDGED:
+      return "its vehicle is hidden; the message carries it";
+    case track_t::TRUST_SUSPECT:
+      return "no longer believed";
+    case track_t::TRUST_REVOKED:
+      return "accused; not believed";
+    default:
+      return "accepted";
+  }
+}
+
 }  // namespace v2vouch::view

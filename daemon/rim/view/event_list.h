@@ -66,5 +66,7 @@ class EventList {
 
 /// The check's name, and what it finds, in plain words.
 std::string CheckInWords(const std::string& check);
+/// What a message's sender is trusted with (track_t::TRUST_...), in words.
+const char* TrustInWords(int trust);
 
 }  // namespace v2vouch::view

@@ -46,25 +46,6 @@ FlatPose MoveOn(const FlatPose& pose, double speed_mps, double yaw_rate_radps, d
           pose.yaw_rad + yaw_rate_radps * seconds};
 }
 
-const char* TrustInWords(int trust) {
-  switch (trust) {
-    case track_t::TRUST_UNKNOWN:
-      return "heard; not compared with any track";
-    case track_t::TRUST_CANDIDATE:
-      return "agrees with a track so far; not validated";
-    case track_t::TRUST_VALIDATED:
-      return "the sensors see its vehicle where it says";
-    case track_t::TRUST_BRIDGED:
-      return "its vehicle is hidden; the message carries it";
-    case track_t::TRUST_SUSPECT:
-      return "no longer believed";
-    case track_t::TRUST_REVOKED:
-      return "accused; not believed";
-    default:
-      return "accepted";
-  }
-}
-
 }  // namespace
 
 MapPoint FlatPose::ToOuter(double x_inner_m, double y_inner_m) const {
