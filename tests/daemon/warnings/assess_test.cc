@@ -60,15 +60,13 @@ TEST(Assess, LeadThatBrakesWarnsBeforeTheClosingSpeedTells) {
 }
 
 TEST(Assess, LeadThatBrakesHardIsUrgentWhileAPlannerCanStillStopBehindIt) {
-  // Both at 20 m/s, 20 m from bumper to bumper, the lead brakes with 5 m/s2 since 1.2 s: 14 m/s,
-  // 16.4 m. Braking with 8 m/s2 from 0.5 s on still leaves a gap; from about 0.8 s on none.
   const auto urgent = [](double gap_m, double lead_mps) {
     Target lead = Car(1, gap_m + 3.75 + 2.0, 0, 0, lead_mps);
     lead.state_O.mean[kAccel] = -5.0;
     const auto found = Assess(SceneOf(Driving(20.0), {lead}), {}, {});
     return !found.empty() && found[0].warning.level == Level::kUrgent;
   };
-  // Stopping from 20 m/s takes 25 m and 0.5 s of reaction 10 m; the lead's 14 m/s 19.6 m.
+  // 20 m/s: 10 m in 0.5 s of reaction and margin, 25 m of braking; the lead's way is 19.6 m.
   EXPECT_FALSE(urgent(19.0, 14.0));
   EXPECT_TRUE(urgent(14.0, 14.0));
 }
