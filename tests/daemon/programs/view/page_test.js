@@ -48,9 +48,10 @@ async function openPage(url) {
   page.on("request", (r) => {
     if (!/^(http|ws):\/\/127\.0\.0\.1:|^(data|blob):/.test(r.url())) strangers.push(r.url());
   });
+  page.setDefaultTimeout(60000);  // A busy machine takes long to load a page.
   await page.setViewport({ width: 1100, height: 700 });
   await page.goto(url);
-  await page.waitForSelector("body[data-ready]", { timeout: 30000 });
+  await page.waitForSelector("body[data-ready]");
   return page;
 }
 const frameOf = (page) => page.evaluate(() => window.__state.frame);
