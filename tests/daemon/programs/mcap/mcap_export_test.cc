@@ -174,7 +174,7 @@ TEST(ViewMessages, ListsAreArraysOfNumbersForPlots) {
   const auto messages = MessagesOf("TRACKS_PRIORITY", ListBytes(3));
   const auto plot = nlohmann::json::parse(On(messages, "/v2vouch/plot/priority").json);
   EXPECT_EQ(plot["count"], 3);
-  EXPECT_EQ(plot["budget_s"], nlohmann::json({2.5, 2.5, 2.5}));
+  EXPECT_EQ(plot["budget_s"].dump(), "[2.5,2.5,2.5]");
   EXPECT_EQ(plot["own_age_s"][0], nullptr);  // Of no sensor.
 }
 
@@ -213,8 +213,9 @@ TEST(ViewMessages, EverySchemaIsJsonWithTheFieldsThatAreFilled) {
   for (const auto& message : MessagesOf("TRACKS_LOCAL", ListBytes(2))) {
     const auto schema = nlohmann::json::parse(foxglove::Schema(message.schema));
     EXPECT_EQ(schema["title"], message.schema);
-    for (const auto& [key, value] : nlohmann::json::parse(message.json).items()) {
-      EXPECT_TRUE(schema["properties"].contains(key)) << key;
+    const auto fields = nlohmann::json::parse(message.json);
+    for (auto field = fields.begin(); field != fields.end(); ++field) {
+      EXPECT_TRUE(schema["properties"].contains(field.key())) << field.key();
     }
   }
 }

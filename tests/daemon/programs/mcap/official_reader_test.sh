@@ -37,7 +37,7 @@ assert lists > 200, lists
 assert view["topics"]["TRACKS_LOCAL"]["count"] == lists
 assert view["topics"]["/v2vouch/local"] == {
     "encoding": "json", "schema": "foxglove.SceneUpdate", "schemaEncoding": "jsonschema", "count": lists}
-assert view["topics"]["/gnss"]["schema"] == "foxglove.LocationFix"
+assert view["topics"]["/ego/gnss"]["schema"] == "foxglove.LocationFix"
 assert view["localTracks"] > 0 and view["localTracks"] == view["localCubes"], view
 for result in (raw, view):  # Opening reads the summary; seeking the chunk of that moment.
     assert result["opening"]["bytes"] < 100_000 and result["seek"]["messages"] > 10, result

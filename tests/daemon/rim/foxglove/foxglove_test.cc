@@ -25,9 +25,9 @@ TEST(FlatTracks, NearestVehicleComesFirstInEveryArray) {
   const json plot = json::parse(FlatTracks(list));
   EXPECT_EQ(plot["count"], 2);
   EXPECT_EQ(plot["nearest_m"], 10.0);
-  EXPECT_EQ(plot["id"], json({5, 7}));
-  EXPECT_EQ(plot["x_m"], json({10.0, 40.0}));
-  EXPECT_EQ(plot["own_age_s"], json({1.0, nullptr}));  // V2V is no own sensor.
+  EXPECT_EQ(plot["id"].dump(), "[5,7]");
+  EXPECT_EQ(plot["x_m"].dump(), "[10,40]");
+  EXPECT_EQ(plot["own_age_s"].dump(), "[1,null]");  // V2V is no own sensor.
   EXPECT_EQ(plot["budget_s"][0], 4.5);
   EXPECT_TRUE(json::parse(FlatTracks(view::List(1, {})))["nearest_m"].is_null());
 }
