@@ -77,6 +77,9 @@ def headline(evaluation):
 
 
 def main(arguments):
+    if arguments in (["-h"], ["--help"]):
+        print(__doc__)
+        return 0
     if len(arguments) != 2:
         print(__doc__, file=sys.stderr)
         return 2

@@ -72,7 +72,9 @@ std::unique_ptr<CsvReader> CsvReader::Open(const std::string& path,
     reader->positions_.push_back(static_cast<std::size_t>(found - header.begin()));
   }
   if (!missing.empty()) {
-    error = path + ": lacks the column(s) " + missing + "; its header is: " + reader->text_;
+    std::string seen = reader->text_.substr(0, 200);  // Whatever the file is: for a terminal.
+    for (char& c : seen) c = static_cast<unsigned char>(c) - 0x20u < 0x5Fu ? c : '?';
+    error = path + ": lacks the column(s) " + missing + "; its header is: " + seen;
     return nullptr;
   }
   return reader;

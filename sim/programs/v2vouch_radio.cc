@@ -229,7 +229,7 @@ int main(int argc, char** argv) {
     }
   }
   if (!lcm_url.empty()) config.lcm_url = lcm_url;
-  Check(config, problems);
+  if (problems.empty()) Check(config, problems);
   for (const std::string& problem : problems) Complain(problem);
   if (!problems.empty()) return v2vouch::kExitUsage;
 

@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
   run->add_option("-l,--lcm-url", options.lcm_url, "LCM bus for --live [LCM_DEFAULT_URL]")
       ->check(v2vouch::CheckLcmUrl);
   run->add_option("--duration", options.duration_s, "Stop after this many seconds of the scenario")
-      ->check(CLI::PositiveNumber);
+      ->check(v2vouch::AboveZero());
   run->add_option("--sensors", sensors, "Instead of the scenario's own sensors.mode")
       ->check(v2vouch::OneOf(SensorModes()));
   run->add_option("--vehicle-out", options.vehicle_out,

@@ -136,6 +136,46 @@ TEST_F(Programs, AWrongLcmUrlIsNamedByEach) {
   EXPECT_THAT(environment.output, HasSubstr("must be a multicast address"));
 }
 
+// What was asked for and is not there: said with what is, and never with exit code 0.
+TEST_F(Programs, AskedForWhatIsNotThereTheySayWhatIs) {
+  ASSERT_EQ(Run("v2vouch-sim run smoke --duration 1 --out a.lcm").code, 0);
+  const auto says = [&](const std::string& line, int code, const std::string& text) {
+    const Finished done = Run(line + " 2>&1");
+    EXPECT_EQ(done.code, code) << line << "\n" << done.output;
+    EXPECT_THAT(done.output, HasSubstr(text)) << line;
+  };
+  says("v2vouch-spy a.lcm --channel RADAR_FORNT", 1, "did you mean RADAR_FRONT?");
+  says("v2vouch-log filter a.lcm --only BSN --out b.lcm", 1, "BSN (did you mean BSM?)");
+  says("v2vouch-log cut a.lcm --from 50 --to 60 --out b.lcm", 1, "it lasts");
+  says("v2vouch-log cut a.lcm --from 5 --to 3 --out b.lcm", 2, "--to must be above --from");
+  says("v2vouch-replay a.lcm --out ''", 2, "--out: is empty");
+  says("v2vouch-eval a.lcm --report ''", 2, "--report: is empty");
+  says("v2vouch-sim run smoke --seed -1 --out b.lcm", 2, "must not be negative");
+  says("v2vouch-sim run smoke --duration 0 --out b.lcm", 2, "must be a number above 0");
+  says("v2vouch-radio --config missing.yaml", 2, "missing.yaml: No such file");
+  EXPECT_EQ(Run("v2vouch-radio --config missing.yaml 2>&1").output.find("at least two"),
+            std::string::npos);
+  if (!fs::exists(bin_ + "v2vouch-view")) return;  // Built where Boost is.
+  says("v2vouch-view missing.lcm", 1, "missing.lcm: No such file");
+  says("v2vouch-view --bind nonsense", 2, "nonsense: must be an IPv4 or IPv6 address");
+  says("v2vouch-view --port 99999", 2, "--port: Value 99999 not in range 0 to 65535");
+}
+
+// Nobody listens at that address. liblcm 1.3.1 gives select() a descriptor of -1 there.
+TEST_F(Programs, ATcpqServerThatIsNotThereAbortsNobody) {
+  for (const std::string line :
+       {"v2vouchd --no-state", "v2vouch-sim run smoke --duration 1 --live", "v2vouch-view --port 0",
+        "v2vouch-warn", "v2vouch-doctor --seconds 0.5", "v2vouch-log record logs",
+        "v2vouch-radio --car 0:0:127.0.0.1:5398 --car 1:0"}) {
+    const std::string program = line.substr(0, line.find(' '));
+    if (!fs::exists(bin_ + program)) continue;
+    const Finished done = Execute("cd " + folder_.string() + " && timeout -s INT 2 " + bin_ + line +
+                                  " -l tcpq://127.0.0.1:1 > out.txt 2>&1; echo code $?");
+    EXPECT_THAT(TextOf(Path("out.txt")), ::testing::Not(HasSubstr("terminated"))) << line;
+    EXPECT_THAT(done.output, ::testing::Not(HasSubstr("code 134"))) << line;
+  }
+}
+
 TEST_F(Programs, OutputsHarmNothing) {
   ASSERT_EQ(Run("v2vouch-sim run smoke --duration 1 --out a.lcm").code, 0);
   const std::string log = TextOf(Path("a.lcm"));

@@ -18,6 +18,8 @@ using State = Advice::State;
 constexpr double kClockTolerance_s = 0.5;  // A camera through a network is 0.3 s late.
 constexpr std::size_t kMostStamps = 1000;
 
+constexpr double kDay_s = 86400.0;
+
 std::string_view TypeFor(wire::InputKind kind) {
   switch (kind) {
     case wire::InputKind::kRadar:
@@ -45,6 +47,11 @@ std::string Rounded(double value) {
   return text;
 }
 
+std::string Span(double seconds) {
+  const double size = std::abs(seconds);
+  return size < kDay_s ? Rounded(size) + " s" : Rounded(size / kDay_s) + " days";
+}
+
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -64,6 +71,9 @@ std::string ClockAdvice(const std::string& channel, double lateness_s) {
     return channel +
            "'s utime is no time of day: is it microseconds since 1970, or time since "
            "boot, milliseconds, nanoseconds?";
+  }
+  if (std::abs(lateness_s) > kDay_s) {
+    return "is a recorded drive being played? Else set " + channel + "'s clock";
   }
   return "synchronise the clocks (PTP, or chrony against the GNSS receiver), or set the sensor's "
          "clock offset in the vehicle file";
@@ -206,7 +216,7 @@ void BusCheck::CheckClocks(AdviceList& findings) const {
     const double lateness_s = Median(found->second.lateness_s) - gnss_s;
     if (input.name == gnss || std::abs(lateness_s) <= kClockTolerance_s) continue;
     findings.push_back({State::kBad, "clock",
-                        input.name + " is " + Rounded(std::abs(lateness_s)) + " s " +
+                        input.name + " is " + Span(lateness_s) + " " +
                             (lateness_s > 0 ? "behind " : "ahead of ") +
                             (has_gnss ? gnss : "this computer's clock"),
                         ClockAdvice(input.name, lateness_s)});
@@ -218,8 +228,8 @@ void BusCheck::CheckClocks(AdviceList& findings) const {
     return;
   }
   findings.push_back({State::kNote, "clock",
-                      gnss + " is " + Rounded(std::abs(gnss_s)) + " s " +
-                          (gnss_s > 0 ? "behind" : "ahead of") + " this computer's clock",
+                      gnss + " is " + Span(gnss_s) + (gnss_s > 0 ? " behind" : " ahead of") +
+                          " this computer's clock",
                       ClockAdvice(gnss, gnss_s)});
 }
 

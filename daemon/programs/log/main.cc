@@ -9,6 +9,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "daemon/common/base/did_you_mean.h"
 #include "daemon/programs/log/csv.h"
 #include "daemon/programs/log/log_edit.h"
 #include "daemon/programs/log/recorder.h"
@@ -133,10 +134,33 @@ int Info(const Options& options) {
   return kExitGood;
 }
 
-int Told(const std::optional<std::int64_t>& count, const std::string& error) {
+// Why nothing was copied: what the log has instead.
+std::string WhatThereIs(const Options& options) {
+  std::string error;
+  const auto info = v2vouch::ReadLogInfo(options.in, error);
+  if (!info) return "";
+  if (options.filter.channels.empty() && options.filter.without.empty()) {
+    char text[64];
+    std::snprintf(text, sizeof text, "; it lasts %.1f s", Seconds(info->first_us, info->last_us));
+    return text;
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, each] : info->channels) names.push_back(name);
+  std::string text = "; it holds " + v2vouch::Listed(names);
+  for (const std::string& wanted : options.filter.channels) {
+    const std::string hint = v2vouch::DidYouMean(wanted, names);
+    if (!hint.empty()) text += "; " + wanted + hint;
+  }
+  return text;
+}
+
+int Told(const std::optional<std::int64_t>& count, const Options& options,
+         const std::string& error) {
   if (!count) return Fail(error);
   std::fprintf(stderr, "%" PRId64 " events\n", *count);
-  return *count > 0 ? kExitGood : Fail("nothing fits: the log that was written is empty");
+  if (*count > 0) return kExitGood;
+  return Fail("nothing of " + options.in + " fits, so " + options.out + " is empty" +
+              WhatThereIs(options));
 }
 
 int Csv(const Options& options) {
@@ -214,10 +238,14 @@ int main(int argc, char** argv) {
   if (csv->parsed()) return Csv(options);
   if (merge->parsed()) {
     const auto count = v2vouch::MergeLogs(options.ins, options.out, error);
-    return Told(count, error);
+    return Told(count, options, error);
+  }
+  if (from->count() > 0 && to->count() > 0 && options.to_s <= options.from_s) {
+    std::cerr << "v2vouch-log: --to must be above --from\n";
+    return v2vouch::kExitUsage;
   }
   if (from->count() > 0) options.filter.from_s = options.from_s;
   if (to->count() > 0) options.filter.to_s = options.to_s;
   const auto count = v2vouch::CopyLog(options.in, options.out, options.filter, error);
-  return Told(count, error);
+  return Told(count, options, error);
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "daemon/common/base/did_you_mean.h"
 #include "daemon/programs/spy/bus_listener.h"
 #include "daemon/programs/spy/plain_words.h"
 #include "daemon/programs/spy/printable.h"
@@ -43,7 +44,11 @@ int Print(const spy::Moment& moment, const Options& options) {
   if (!options.channel.empty()) {
     const spy::ChannelRow* row = moment.table->Find(options.channel);
     if (row == nullptr) {
-      std::cerr << "v2vouch-spy: nothing on " << options.channel << '\n';
+      std::vector<std::string> heard;
+      for (const auto& [name, each] : moment.table->rows()) heard.push_back(spy::Printable(name));
+      std::cerr << "v2vouch-spy: nothing on " << options.channel
+                << DidYouMean(options.channel, heard)
+                << "; heard: " << (heard.empty() ? "nothing at all" : Listed(heard)) << '\n';
       return kExitFailed;
     }
     if (options.json) {

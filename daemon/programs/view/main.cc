@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // v2vouch-view: the live page and Foxglove's protocol on one loopback port; plays logs too.
+#include <arpa/inet.h>
 #include <spawn.h>
 #include <sys/random.h>
 #include <unistd.h>
@@ -51,14 +52,24 @@ struct Options {
   v2vouch::view::AccessRules rules;
 };
 
+std::string CheckAddress(const std::string& text) {
+  std::array<unsigned char, sizeof(in6_addr)> parsed{};
+  for (const int family : {AF_INET, AF_INET6}) {
+    if (inet_pton(family, text.c_str(), parsed.data()) == 1) return {};
+  }
+  return text + ": must be an IPv4 or IPv6 address of this machine";
+}
+
 void AddOptions(CLI::App& app, Options& options) {
-  app.add_option("LOG", options.log, "LCM log to play; without: live from LCM")
-      ->check(CLI::ExistingFile);
+  app.add_option("LOG", options.log, "LCM log to play; without: live from LCM");
   app.add_option("--config", options.config, "Vehicle description (default: the shipped vehicle)");
   app.add_option("-l,--lcm-url", options.lcm_url, "LCM URL (default: the configuration's)")
       ->check(v2vouch::CheckLcmUrl);
-  app.add_option("--port", options.port, "TCP port, 0 = any free one")->capture_default_str();
+  app.add_option("--port", options.port, "TCP port, 0 = any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
   app.add_option("--bind", options.bind, "Address to listen on; other than loopback needs a token")
+      ->check(CheckAddress)
       ->capture_default_str();
   app.add_flag("--open", options.wants_browser, "Open the page in the browser (xdg-open)");
   app.add_flag("--no-token", options.has_no_token, "Let every program of this machine look");

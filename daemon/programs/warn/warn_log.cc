@@ -50,14 +50,13 @@ bool WarnOverLog(const std::string& in, const std::string& out, const WarnFile& 
   wire::WarnFeed feed(file.channels, file.warnings, file.body());
   LogEvent event;
   std::vector<std::uint8_t> bytes;
-  Timestamp first{};
   while (reader->Next(event)) {
     if (!progress(reader->progress())) {
       error = "stopped";
       return false;
     }
-    if (result.events++ == 0) first = event.received;
-    result.log_seconds = ToSeconds(event.received - first);
+    if (result.events++ == 0) result.first = event.received;
+    result.log_seconds = ToSeconds(event.received - result.first);
     if (event.channel == file.channels.warnings) {
       ++result.old_outputs;
       continue;

@@ -25,6 +25,7 @@ struct WarnResult {
   std::int64_t old_outputs = 0;
   std::int64_t damaged = 0;
   std::int32_t degraded = 0;  ///< Bits that every list had.
+  Timestamp first{};          ///< Recording of the log's first event.
   double log_seconds = 0.0;
   std::vector<double> step_us;
   std::vector<WarnEpisode> episodes;

@@ -15,6 +15,14 @@ double Share(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
+// "1.5 s"; "none" for what is not known or not there.
+std::string Amount(double value, const char* unit) {
+  if (!std::isfinite(value)) return "none";
+  char text[48];
+  std::snprintf(text, sizeof(text), "%.1f %s", value, unit);
+  return text;
+}
+
 constexpr std::pair<std::int32_t, const char*> kDegraded[] = {
     {warnings::kNoPriority, "no PRIORITY: hidden vehicles are not known"},
     {warnings::kGnssSuspect, "ego GNSS suspect: the V2V side is frozen"},
@@ -28,14 +36,16 @@ constexpr std::pair<std::int32_t, const char*> kDegraded[] = {
 std::string WarningLine(const warnings::Warning& warning) {
   char text[320];
   const warnings::Figures& f = warning.figures;
-  std::snprintf(text, sizeof(text),
-                "%-4s %-6s track %lld local %lld at %.1f %.1f m %.1f m/s: P %.2f in %.1f s (early "
-                "%.1f), gap %.1f s, brake %.1f m/s2, seen %.1f s ago, budget %.1f s",
-                warnings::KindName(warning.kind), warnings::LevelName(warning.level),
-                static_cast<long long>(warning.track_id), static_cast<long long>(warning.local_id),
-                f.position_B.x(), f.position_B.y(), f.speed_mps, f.conflict_probability,
-                f.time_to_conflict_s, f.time_to_conflict_early_s, f.post_encroachment_s,
-                f.required_decel_mps2, f.own_sensor_age_s, f.bridge_budget_s);
+  std::snprintf(
+      text, sizeof(text),
+      "%-4s %-6s track %lld local %lld at %.1f %.1f m %.1f m/s: P %.2f in %s (early "
+      "%s), gap %s, brake %s, last seen %s, budget %s",
+      warnings::KindName(warning.kind), warnings::LevelName(warning.level),
+      static_cast<long long>(warning.track_id), static_cast<long long>(warning.local_id),
+      f.position_B.x(), f.position_B.y(), f.speed_mps, f.conflict_probability,
+      Amount(f.time_to_conflict_s, "s").c_str(), Amount(f.time_to_conflict_early_s, "s").c_str(),
+      Amount(f.post_encroachment_s, "s").c_str(), Amount(f.required_decel_mps2, "m/s2").c_str(),
+      Amount(f.own_sensor_age_s, "s ago").c_str(), Amount(f.bridge_budget_s, "s").c_str());
   return text;
 }
 
@@ -86,8 +96,8 @@ std::string WarnText(const WarnResult& result) {
     if ((result.degraded & bit) != 0) text += std::string("throughout: ") + what + "\n";
   }
   for (const WarnEpisode& each : result.episodes) {
-    std::snprintf(line, sizeof(line), "%10.2f s, %.2f s long: ",
-                  ToSeconds(each.worst.since.time_since_epoch() % std::chrono::hours(24)),
+    std::snprintf(line, sizeof(line),
+                  "at %6.2f s, %.2f s long: ", ToSeconds(each.worst.since - result.first),
                   ToSeconds(each.until - each.worst.since));
     text += line + WarningLine(each.worst) + "\n";
   }

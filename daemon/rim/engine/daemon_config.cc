@@ -92,6 +92,14 @@ std::string KeyOf(const wire::InputChannel& channel) {
   return "lcm.channels.own_bsm";
 }
 
+// An empty file, or one of comments only: what a full disk or a broken edit leaves behind.
+bool HoldsNothing(const std::string& path) {
+  std::vector<std::string> problems;
+  const auto text = config::ReadFile(path, problems);
+  const auto root = text ? config::ParseYaml(*text, path, problems) : std::nullopt;
+  return root && root->type == config::YamlNode::Type::kEmpty;
+}
+
 void CheckChannels(const DaemonConfig& config, Checks& checks) {
   const VehicleConfig& vehicle = config.perception.vehicle;
   const wire::ChannelNames& names = config.lcm.channels;
@@ -168,6 +176,9 @@ bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
     const DetectorConfig before = config.detector;
     const std::string state_before = config.state.file;
     config::Load(path, config, problems, notes);
+    if (notes != nullptr && HoldsNothing(path)) {
+      notes->push_back(path + ": holds no setting, so this is the shipped vehicle");
+    }
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     const auto beside = [&](std::string& file, const std::string& old) {
       if (!file.empty() && file != old) file = (folder / file).string();

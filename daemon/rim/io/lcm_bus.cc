@@ -72,6 +72,11 @@ std::unique_ptr<LcmBus> LcmBus::Open(const std::string& url) {
   // Opens no receiving socket before its first subscription.
   lcm_t* lcm = lcm_create(liblcm_url.empty() ? nullptr : liblcm_url.c_str());
   if (lcm == nullptr) return nullptr;
+  // liblcm hands out a tcpq bus whose server cannot be reached.
+  if (effective.starts_with("tcpq:") && lcm_get_fileno(lcm) < 0) {
+    lcm_destroy(lcm);
+    return nullptr;
+  }
   return std::unique_ptr<LcmBus>(new LcmBus(lcm, effective));
 }
 
@@ -118,6 +123,12 @@ bool LcmBus::Handle(int timeout_ms) {
   if (OwnReceiverUrl(url_)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(timeout_ms));
     return true;
+  }
+  // A tcpq server that went away, or no route: liblcm 1.3.1 would give select() a descriptor of -1,
+  // which aborts the program.
+  if (lcm_get_fileno(lcm_) < 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(timeout_ms));
+    return false;
   }
   return lcm_handle_timeout(lcm_, timeout_ms) >= 0;
 }

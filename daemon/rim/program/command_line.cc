@@ -33,6 +33,26 @@ std::string Hints(const CLI::App& app) {
   return hints;
 }
 
+// What CLI11 lets pass: "" for a name or a number, -1 as 18446744073709551615.
+std::string Faults(const CLI::App& app) {
+  std::string faults;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& given : option->results()) {
+      const std::string line = (faults.empty() ? "" : "\n") + option->get_name() + ": ";
+      if (given.empty()) {
+        faults += line + "is empty; is a shell variable not set?";
+      } else if (given.front() == '-' && option->get_type_name().starts_with("UINT")) {
+        faults += line + given + ": must not be negative";
+      }
+    }
+  }
+  for (const CLI::App* command : app.get_subcommands()) {
+    const std::string more = Faults(*command);
+    if (!more.empty()) faults += (faults.empty() ? "" : "\n") + more;
+  }
+  return faults;
+}
+
 }  // namespace
 
 std::optional<int> ReadCommandLine(CLI::App& app, const std::string& name, int argc, char** argv) {
@@ -40,6 +60,8 @@ std::optional<int> ReadCommandLine(CLI::App& app, const std::string& name, int a
   app.set_version_flag("--version", name + " " V2VOUCH_VERSION);
   try {
     app.parse(argc, argv);
+    const std::string faults = Faults(app);
+    if (!faults.empty()) throw CLI::ValidationError(faults);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
@@ -66,6 +88,15 @@ CLI::Validator OneOf(std::vector<std::string> words) {
             return given + ": must be one of " + all + DidYouMean(given, words);
           },
           "{" + all + "}"};
+}
+
+CLI::Validator AboveZero() {
+  return {[](std::string& given) {
+            double value = 0.0;
+            if (CLI::detail::lexical_cast(given, value) && value > 0.0) return std::string();
+            return given + ": must be a number above 0";
+          },
+          "above 0"};
 }
 
 }  // namespace v2vouch

@@ -97,7 +97,12 @@ TEST(WarnOverLog, WarnsOfTheStandingCarAndWritesTheSameBytesTwice) {
   ASSERT_EQ(result.episodes.size(), 1u);
   EXPECT_EQ(result.episodes[0].worst.level, warnings::Level::kUrgent);
   EXPECT_EQ(result.episodes[0].worst.local_id, 5);
-  EXPECT_NE(WarnText(result).find("URGENT"), std::string::npos);
+  const std::string text = WarnText(result);
+  EXPECT_NE(text.find("URGENT"), std::string::npos);
+  // Since the log's beginning, as v2vouch-log and the viewer count; nothing unknown is a number.
+  EXPECT_NE(text.find("\nat   "), std::string::npos) << text;
+  EXPECT_NE(text.find("budget none"), std::string::npos) << text;
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
   EXPECT_NE(WarnJson(result).find("\"level\":\"URGENT\""), std::string::npos);
   // Over its own output: recorded warnings are dropped, the rest gives the same file.
   WarnResult second;

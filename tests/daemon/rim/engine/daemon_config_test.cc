@@ -159,6 +159,14 @@ struct Loaded {
 
 constexpr char kRear[] = "x_m: -0.9, y_m: 0, yaw_deg: 180, half_fov_deg: 60, max_range_m: 70";
 
+TEST(DaemonConfig, AFileWithoutAnySettingIsNoticed) {
+  for (const char* text : {"", "\n\n", "# my car\n", "---\n"}) {
+    const Loaded loaded(text);
+    EXPECT_TRUE(loaded.is_good) << text;
+    EXPECT_THAT(loaded.notes, testing::ElementsAre(HasSubstr("holds no setting"))) << text;
+  }
+}
+
 TEST(DaemonConfigSensors, OneKeyOfOneSensorChangesThatKeyAlone) {
   const Loaded loaded("vehicle: {radars: [{name: FRONT_LEFT, yaw_deg: 56}]}");
   ASSERT_TRUE(loaded.is_good) << testing::PrintToString(loaded.problems);

@@ -73,6 +73,7 @@ TEST(LcmUrl, AllFaultsAreNamedAtOnce) {
 // liblcm 1.3.1 aborts the whole program at this one.
 TEST(LcmUrl, ABusOfAWrongUrlIsNotOpened) {
   EXPECT_EQ(LcmBus::Open("tcpq://"), nullptr);
+  EXPECT_EQ(LcmBus::Open("tcpq://127.0.0.1:1"), nullptr);  // Nobody listens there.
   EXPECT_NE(LcmBus::Open("memq://"), nullptr);
 }
 
