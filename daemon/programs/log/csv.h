@@ -14,8 +14,8 @@ namespace v2vouch {
 /// "inputs.channel". Columns: recorded_utime, then the fields as given; strings are quoted where
 /// CSV wants it, numbers exact, NaN as nan.
 /// @param fields empty: all of the type that are no list.
-/// @return rows written; nullopt with `error` (an unknown field with the one that was probably
-/// meant).
+/// @return rows written, fewer where `out` takes no more (std::ferror tells); nullopt with `error`
+/// (an unknown field with the one that was probably meant).
 std::optional<std::int64_t> WriteCsv(const std::string& log, const std::string& channel,
                                      std::vector<std::string> fields, std::FILE* out,
                                      std::string& error);

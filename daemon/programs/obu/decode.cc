@@ -13,6 +13,7 @@
 #include "daemon/obu/framing/datagram.h"
 #include "daemon/obu/gateway/receptions.h"
 #include "daemon/programs/obu/datagram_report.h"
+#include "daemon/rim/io/std_streams.h"
 
 namespace v2vouch::obu {
 namespace {
@@ -140,7 +141,7 @@ int Decode(const DecodeOptions& options, TrustAnchors anchors) {
     }
     totals.Add(report);
     std::cout << (options.as_json ? JsonOf(report) + "\n" : TextOf(report));
-    if (!std::cout) return 1;
+    if (!std::cout) return IsReaderGone() ? 0 : 1;
   }
   if (!options.as_json) std::cout << TextOf(totals);
   if (!error.empty()) {

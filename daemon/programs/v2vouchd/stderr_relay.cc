@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <new>
 #include <string_view>
+#include <system_error>
 
 namespace v2vouch {
 namespace {
@@ -30,10 +32,16 @@ StderrRelay::StderrRelay() {
   real_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   if (real_ < 0 || pipe2(pipe_.data(), O_NONBLOCK | O_CLOEXEC) != 0) return;
   static_cast<void>(fcntl(pipe_[1], F_SETPIPE_SZ, kPipeBytes));
+  try {
+    thread_ = std::thread([this] { Run(); });
+  } catch (const std::system_error&) {  // No thread is to be had: stderr stays as it is.
+    close(pipe_[0]);
+    close(pipe_[1]);
+    return;
+  }
   dup2(pipe_[1], STDERR_FILENO);
   close(pipe_[1]);
   signal(SIGABRT, LetRelayFinish);
-  thread_ = std::thread([this] { Run(); });
 }
 
 StderrRelay::~StderrRelay() {
@@ -62,7 +70,11 @@ void StderrRelay::Run() {
     if (poll(files.data(), files.size(), kLook_ms) <= 0) continue;
     if (files[0].revents != 0) {
       const ssize_t got = read(pipe_[0], buffer.data(), buffer.size());
-      if (got > 0) Keep(buffer.data(), static_cast<std::size_t>(got));
+      try {
+        if (got > 0) Keep(buffer.data(), static_cast<std::size_t>(got));
+      } catch (const std::bad_alloc&) {
+        ++lost_;
+      }
       if (got == 0) is_open = false;
     }
     if (files[1].revents != 0) PassOn();

@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <functional>
 #include <iostream>
+#include <new>
+#include <string>
 #include <thread>
 
 #include "daemon/rim/io/stop_signal.h"
@@ -51,14 +53,36 @@ TEST(StandardStreams, ResultsThatStandardOutputDoesNotTakeAreAFailure) {
   EXPECT_EQ(print_into([] { PointAt(STDOUT_FILENO, "/dev/full"); }, 0), 1);
   EXPECT_EQ(print_into([] { close(STDOUT_FILENO); }, 0), 1);
   EXPECT_EQ(print_into([] { PointAt(STDOUT_FILENO, "/dev/full"); }, 2), 2);
-  const auto closed_pipe = [] {
-    int ends[2];
-    if (pipe(ends) != 0) std::abort();
-    dup2(ends[1], STDOUT_FILENO);
-    close(ends[0]);
-    close(ends[1]);
-  };
-  EXPECT_EQ(print_into(closed_pipe, 0), 1);
+}
+
+// `| head`, a pager that was closed: whoever read has what it wanted.
+TEST(StandardStreams, AReaderThatGoesAwayIsNoFailureAndNoWord) {
+  for (const int code : {0, 1, 2}) {
+    EXPECT_EQ(ExitCodeOf([code] {
+                int ends[2];
+                int words[2];
+                if (pipe(ends) != 0 || pipe(words) != 0) std::abort();
+                dup2(ends[1], STDOUT_FILENO);
+                close(ends[1]);
+                if (IsReaderGone()) return 7;
+                close(ends[0]);
+                if (!IsReaderGone()) return 8;
+                const pid_t printing = fork();
+                if (printing == 0) {
+                  GuardStandardStreams("test");
+                  dup2(words[1], STDERR_FILENO);
+                  for (int i = 0; i < 10000; ++i) std::cout << "figures\n";
+                  std::exit(code);
+                }
+                close(words[1]);
+                int status = 0;
+                waitpid(printing, &status, 0);
+                char said = 0;
+                if (read(words[0], &said, 1) != 0) return 9;
+                return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+              }),
+              code);
+  }
 }
 
 TEST(StandardStreams, AProgramThatPrintsNothingDoesNotMindAClosedOutput) {
@@ -80,6 +104,24 @@ TEST(StandardStreams, NoFileGetsTheNumberOfAClosedStream) {
               return open("/dev/null", O_WRONLY) > STDERR_FILENO ? 0 : 3;
             }),
             0);
+}
+
+// A host without memory or threads: said, and an ordinary exit code, whichever thread it is.
+TEST(StandardStreams, AnExceptionThatNobodyCaughtIsToldAndExitCode1) {
+  int words[2];
+  ASSERT_EQ(pipe(words), 0);
+  EXPECT_EQ(ExitCodeOf([&] {
+              GuardStandardStreams("test");
+              dup2(words[1], STDERR_FILENO);
+              std::thread([] { throw std::bad_alloc(); }).join();
+              return 0;
+            }),
+            1);
+  close(words[1]);
+  char said[200] = {};
+  EXPECT_GT(read(words[0], said, sizeof(said) - 1), 0);
+  EXPECT_EQ(std::string(said).rfind("test: cannot go on: ", 0), 0u) << said;
+  close(words[0]);
 }
 
 TEST(StopSignal, EndsAProgramThatDoesNotLookForIt) {
