@@ -84,6 +84,7 @@ int Record(const Options& options) {
   bool was_paused = false;
   while (bus && !v2vouch::IsStopAsked()) {
     bus->Handle(100);
+    recorder.Tick(v2vouch::Recorder::Clock::now());
     if (recorder.is_paused() == was_paused) continue;
     was_paused = recorder.is_paused();
     std::cerr << "v2vouch-log: "
@@ -148,6 +149,7 @@ int Csv(const Options& options) {
   const bool is_written = std::fflush(file) == 0 && std::ferror(file) == 0;
   if (!options.out.empty()) std::fclose(file);
   if (!rows) return Fail(error);
+  if (options.out.empty()) return kExitGood;  // Of standard output the guard tells.
   return is_written ? kExitGood : Fail("the table cannot be written");
 }
 

@@ -14,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kBetweenLooks{1000};  // Free space and limits.
+constexpr std::chrono::milliseconds kLongestWait{200};    // Of an event, before it is handed on.
 
 double FreeShareOf(const fs::path& folder) {
   std::error_code error;
@@ -92,6 +93,7 @@ bool Recorder::OpenNext(Clock::time_point now) {
     if (fs::exists(fs::symlink_status(open_, error))) continue;  // Nothing is overwritten.
     writer_ = LogWriter::Create(open_.string(), problem_);
     open_bytes_ = 0;
+    flushed_ = now;
     return writer_ != nullptr;
   }
   problem_ = folder_.string() + ": a hundred files in one second";
@@ -101,9 +103,35 @@ bool Recorder::OpenNext(Clock::time_point now) {
 void Recorder::Finish() {
   if (!writer_) return;
   std::string error;
-  if (!writer_->Close(error)) problem_ = error;
+  if (!writer_->Close(error)) {
+    problem_ = error;
+    CountLost();
+  }
   writer_.reset();
   open_.clear();
+  waiting_.clear();
+}
+
+// Of a file that took no more: the events beyond its end.
+void Recorder::CountLost() {
+  std::error_code error;
+  const auto size = fs::file_size(open_, error);
+  const auto lost = std::ranges::count_if(
+      waiting_, [&](std::int64_t end) { return error || end > static_cast<std::int64_t>(size); });
+  written_ -= lost;
+  missed_ += lost;
+}
+
+void Recorder::Tick(Clock::time_point now) {
+  if (!writer_ || waiting_.empty()) return;
+  if (now - flushed_ < kLongestWait && now >= flushed_) return;
+  flushed_ = now;
+  if (writer_->Flush()) {
+    waiting_.clear();
+  } else {  // A full disk. Its whole events stay readable.
+    Finish();
+    is_paused_ = true;
+  }
 }
 
 // Once a second: limits, and whether there is space.
@@ -140,15 +168,13 @@ void Recorder::Write(Timestamp received, std::string_view channel,
     return;
   }
   writer_->Write(received, channel, bytes);
-  if (!writer_->is_good()) {  // A full disk. Its whole events stay readable.
-    Finish();
-    is_paused_ = true;
-    ++missed_;
-    return;
-  }
   open_bytes_ +=
       static_cast<std::int64_t>(log_format::kHeaderBytes + channel.size() + bytes.size());
+  waiting_.push_back(open_bytes_);
   ++written_;
+  if (writer_->is_good()) return Tick(now);
+  Finish();
+  is_paused_ = true;
 }
 
 }  // namespace v2vouch

@@ -86,6 +86,8 @@ class LogWriter {
   void Write(const LogEvent& event);
   /// False once something could not be written; no use in going on then.
   [[nodiscard]] bool is_good() const { return errno_ == 0; }
+  /// Hands everything so far to the system: no kill of this process loses it. @return is_good().
+  bool Flush();
   /// Flushes and closes. @return false with `error` set when anything could not be written.
   bool Close(std::string& error);
 

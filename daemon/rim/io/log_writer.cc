@@ -55,6 +55,12 @@ void LogWriter::WriteNumbered(std::int64_t number, Timestamp received, std::stri
   if (!good && errno_ == 0) errno_ = errno;
 }
 
+bool LogWriter::Flush() {
+  V2VOUCH_CHECK(file_ != nullptr);
+  if (std::fflush(file_) != 0 && errno_ == 0) errno_ = errno;
+  return is_good();
+}
+
 bool LogWriter::Close(std::string& error) {
   V2VOUCH_CHECK(file_ != nullptr);
   // A full disk often shows only when the last buffer goes out.

@@ -2,6 +2,8 @@
 #include "daemon/programs/log/recorder.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -57,6 +59,39 @@ TEST_F(RecorderRuns, FilesFollowEachOtherWithoutAGap) {
   ASSERT_EQ(times.size(), 100u);
   for (std::size_t i = 0; i < times.size(); ++i) EXPECT_EQ(times[i], static_cast<int>(i));
   EXPECT_EQ(recorder.missed(), 0);
+}
+
+// The file as another process sees it: what a kill right now would leave.
+TEST_F(RecorderRuns, AKillLosesAtMostTheLast200Milliseconds) {
+  RecorderLimits limits;
+  limits.free_share = 0.0;
+  Recorder recorder(folder_, limits);
+  for (int i = 0; i < 50; ++i) {
+    Feed(recorder, 1);  // At now_ - 100 ms.
+    EXPECT_GE(Recorded().size(), static_cast<std::size_t>(std::max(0, i - 1))) << i;
+  }
+  recorder.Tick(now_ + 100ms);
+  EXPECT_EQ(Recorded().size(), 50u);  // Silence holds nothing back.
+}
+
+TEST_F(RecorderRuns, WhatADiskTookAndDidNotKeepIsCountedAsMissed) {
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit small = before;
+  small.rlim_cur = 100'000;  // Of a file: about 97 events.
+  setrlimit(RLIMIT_FSIZE, &small);
+  RecorderLimits limits;
+  limits.free_share = 0.0;
+  {
+    Recorder recorder(folder_, limits);
+    Feed(recorder, 1000);
+    recorder.Finish();
+    EXPECT_GT(recorder.missed(), 0);
+    EXPECT_EQ(static_cast<std::int64_t>(Recorded().size()), recorder.written());
+    EXPECT_EQ(recorder.written() + recorder.missed(), 1000);
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
 }
 
 TEST_F(RecorderRuns, PausesForWantOfSpaceLosesNothingThatItHasAndGoesOn) {
