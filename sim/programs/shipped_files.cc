@@ -14,24 +14,30 @@ namespace {
 std::filesystem::path ScenarioFolder() { return ShippedFolder("scenarios"); }
 std::filesystem::path OverlayFolder() { return ShippedFolder("attacks"); }
 
-std::vector<std::filesystem::path> YamlFiles(const std::filesystem::path& folder,
-                                             std::string& problem) {
+std::vector<std::filesystem::path> YamlFiles(const std::string& shipped, std::string& problem) {
+  const std::filesystem::path folder = ShippedFolder(shipped);
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     if (entry.path().extension() == ".yaml") files.push_back(entry.path());
   }
   if (error) problem = folder.string() + ": " + error.message();
+  if (const std::string missing = WhyNotShipped(shipped); !missing.empty()) problem = missing;
   std::sort(files.begin(), files.end());
   return files;
 }
 
-std::string Find(const std::string& name, const std::filesystem::path& shipped, const char* what,
-                 const std::vector<std::string>& known, std::string& problem) {
+std::string Find(const std::string& name, const std::filesystem::path& shipped,
+                 const std::string& folder, const char* what, const std::vector<std::string>& known,
+                 std::string& problem) {
   std::error_code ignored;
   if (std::filesystem::exists(name, ignored)) return name;
   if (std::filesystem::is_regular_file(shipped, ignored)) return shipped.string();
   if (!problem.empty()) problem += "  and ";
+  if (const std::string missing = WhyNotShipped(folder); !missing.empty()) {
+    problem += name + ": no such file, and " + missing + "\n";
+    return name;
+  }
   problem += name + ": no such file, and no shipped " + what + " of this name" +
              DidYouMean(name, known) + "; `v2vouch-sim list` shows them\n";
   return name;
@@ -53,16 +59,16 @@ bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; 
 }  // namespace
 
 std::vector<std::filesystem::path> ShippedScenarios(std::string& problem) {
-  return YamlFiles(ScenarioFolder(), problem);
+  return YamlFiles("scenarios", problem);
 }
 
 std::vector<std::filesystem::path> ShippedOverlays(std::string& problem) {
-  return YamlFiles(OverlayFolder(), problem);
+  return YamlFiles("attacks", problem);
 }
 
 std::string FindScenario(const std::string& name, std::string& problem) {
   std::string ignored;
-  return Find(name, ScenarioFolder() / (name + ".yaml"), "scenario",
+  return Find(name, ScenarioFolder() / (name + ".yaml"), "scenarios", "scenario",
               Names(ShippedScenarios(ignored), false), problem);
 }
 
@@ -77,7 +83,7 @@ std::string FindOverlay(const std::string& name, std::string& problem) {
     }
   }
   std::string ignored;
-  return Find(name, OverlayFolder() / (stem + ".yaml"), "overlay",
+  return Find(name, OverlayFolder() / (stem + ".yaml"), "attacks", "overlay",
               Names(ShippedOverlays(ignored), true), problem);
 }
 

@@ -229,6 +229,9 @@ int RunCampaign(const Options& options) {
     settings.config = out / "vehicle.yaml";
     if (!SettleConfig(options.config, settings.config, problem)) problems.push_back(problem);
   }
+  if (options.field && !v2vouch::WhyNotShipped("config").empty()) {
+    problems.push_back(v2vouch::WhyNotShipped("config"));
+  }
   if (problems.empty() && options.field) {
     settings.paper_config = out / "vehicle_paper.yaml";
     if (!SettleConfig(v2vouch::ShippedFolder("config") / "vehicle_paper.yaml",

@@ -21,7 +21,8 @@ const char* const kPrograms[] = {
     "v2vouchd",         "v2vouch-replay",        "v2vouch-sim",    "v2vouch-eval",
     "v2vouch-campaign", "v2vouch-calibrate",     "v2vouch-import", "v2vouch-detect",
     "v2vouch-annotate", "v2vouch-bench-tracker", "v2vouch-obu",    "v2vouch-baseline",
-    "v2vouch-view",     "v2vouch-sift",          "v2vouch-radio"};
+    "v2vouch-view",     "v2vouch-sift",          "v2vouch-radio",  "v2vouch-doctor",
+    "v2vouch-log",      "v2vouch-mcap",          "v2vouch-spy",    "v2vouch-warn"};
 
 class Programs : public ::testing::Test {
  protected:
@@ -66,6 +67,42 @@ TEST_F(Programs, ResultsThatStandardOutputDoesNotTakeAreExitCode1AndSaid) {
   EXPECT_EQ(Into("/dev/full", "v2vouch-sim list").code, 1);
   EXPECT_EQ(Into("/dev/full", "v2vouchd --print-config").code, 1);
   EXPECT_EQ(Into("/dev/full", "v2vouch-bench-tracker --generate 5 --frames 30 --json").code, 1);
+}
+
+// `| head`, a pager that was closed. Whoever writes into a pipe without a reader says nothing, and
+// its exit code is that of its work.
+TEST_F(Programs, AReaderThatGoesAwayIsNoFailure) {
+  ASSERT_EQ(Run("v2vouch-sim run left_turn --duration 6 --out a.lcm").code, 0);
+  ASSERT_EQ(Run("v2vouch-replay a.lcm --out b.lcm").code, 0);
+  const auto quiet = [&](const std::string& line) {
+    const std::string shell = "bash -c '(sleep 0.05; exec " + bin_ + line +
+                              ") 2>said.txt | true; echo ${PIPESTATUS[0]}; cat said.txt'";
+    return Execute("cd " + folder_.string() + " && " + shell).output;
+  };
+  for (const std::string program : kPrograms) {
+    EXPECT_EQ(quiet(program + " --help"), "0\n") << program;
+  }
+  for (const char* line :
+       {"v2vouch-log to-csv b.lcm TRACKS_LOCAL --field tracks.x_body_m", "v2vouch-log info b.lcm",
+        "v2vouch-log info b.lcm --json", "v2vouch-spy b.lcm --once", "v2vouch-spy b.lcm --json",
+        "v2vouch-spy b.lcm --channel TRACKS_LOCAL", "v2vouch-sim list", "v2vouch-sim list --json",
+        "v2vouchd --print-config", "v2vouchd --print-config-keys", "v2vouch-warn b.lcm --json",
+        "v2vouch-bench-tracker --generate 3 --frames 30 --json"}) {
+    EXPECT_EQ(quiet(line), "0\n") << line;
+  }
+  // What fails, fails and says so as ever.
+  EXPECT_EQ(quiet("v2vouch-log to-csv b.lcm TRACKS_LOCAL --field nothing").substr(0, 2), "1\n");
+}
+
+// What prints much stops when nobody reads it: here its input never ends.
+TEST_F(Programs, ACaptureWithoutEndEndsWithItsReader) {
+  const Finished head = Execute("yes '(1) 001425' | timeout 10 " + bin_ +
+                                "v2vouch-obu --decode /dev/stdin 2>&1 | head -3");
+  EXPECT_EQ(head.code, 0);
+  const Finished code = Execute("bash -c 'yes 001425 | timeout 10 " + bin_ +
+                                "v2vouch-obu --decode /dev/stdin | head -3 >/dev/null; "
+                                "echo ${PIPESTATUS[1]}'");
+  EXPECT_EQ(code.output, "0\n");
 }
 
 TEST_F(Programs, WithStderrFullOrClosedTheyWorkAsEver) {
@@ -138,6 +175,23 @@ TEST_F(Programs, OutputsHarmNothing) {
   // Into a pipe, as one would.
   EXPECT_EQ(Run("v2vouch-sim run smoke --duration 1 --out /dev/stdout --json | head -c 4").output,
             "\xED\xA1\xDA\x01");
+}
+
+// A program that was taken out of build/release/bin alone.
+TEST_F(Programs, WithoutTheirShippedFilesTheySayWhereTheyLooked) {
+  for (const char* name : {"v2vouch-sim", "v2vouch-campaign"}) {
+    fs::create_directories(folder_ / "bin");
+    fs::copy_file(bin_ + name, folder_ / "bin" / name);
+  }
+  const std::string place = "no folder " + fs::canonical(folder_).string() + "/share/v2vouch/";
+  for (const char* line : {"v2vouch-sim run left_turn --out a.lcm", "v2vouch-sim list",
+                           "v2vouch-campaign --attacks A5 --out study --scenarios smoke"}) {
+    const Finished alone =
+        Execute("cd " + folder_.string() + " && unset V2VOUCH_SHARE; bin/" + line + " 2>&1");
+    EXPECT_NE(alone.code, 0) << line;
+    EXPECT_THAT(alone.output, HasSubstr(place)) << line;
+    EXPECT_THAT(alone.output, HasSubstr("V2VOUCH_SHARE")) << line;
+  }
 }
 
 TEST_F(Programs, AStopIsHeardWithinASecond) {

@@ -15,4 +15,19 @@ std::filesystem::path ShippedFolder(const std::string& name) {
   return self.parent_path().parent_path() / "share/v2vouch" / name;
 }
 
+std::string WhyNotShipped(const std::string& name) {
+  const std::filesystem::path folder = ShippedFolder(name);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(folder, ignored)) return "";
+  const char* share = std::getenv("V2VOUCH_SHARE");
+  const bool is_set = share != nullptr && *share != '\0';
+  std::string text = "no shipped files: there is no folder " + folder.string();
+  text += is_set ? ", which V2VOUCH_SHARE names"
+                 : ". Programs look for share/v2vouch beside the folder they lie in";
+  return text +
+         ". Copy that folder along with the programs, install them (cmake --install, or the "
+         "package), or let V2VOUCH_SHARE name the folder that holds " +
+         name;
+}
+
 }  // namespace v2vouch

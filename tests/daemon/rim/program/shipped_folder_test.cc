@@ -27,5 +27,15 @@ TEST(ShippedFolder, TheEnvironmentGoesFirstAndAnEmptyVariableDoesNotCount) {
   unsetenv("V2VOUCH_SHARE");
 }
 
+TEST(ShippedFolder, WhereItIsNotTheWordsSayWhereItWasLookedForAndWhatToDo) {
+  unsetenv("V2VOUCH_SHARE");
+  EXPECT_EQ(WhyNotShipped("config"), "");
+  setenv("V2VOUCH_SHARE", "/somewhere/else", 1);
+  const std::string why = WhyNotShipped("config");
+  EXPECT_NE(why.find("/somewhere/else/config"), std::string::npos) << why;
+  EXPECT_NE(why.find("V2VOUCH_SHARE"), std::string::npos) << why;
+  unsetenv("V2VOUCH_SHARE");
+}
+
 }  // namespace
 }  // namespace v2vouch
