@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """V2Vouch's messages in pure Python: logs and live lists, without the LCM package for Python.
 
-Needs Python 3.8 and the program lcm-gen (Debian: apt install liblcm-bin), which makes the message classes of
-the .lcm files once per run. Only loopback-sized use: one thread, no subscription queues.
+Needs Python 3.8 and nothing else where V2Vouch is installed. In a source tree the message classes are made of the
+.lcm files by lcm-gen (apt install liblcm-bin), once per run. One thread, no subscription queues.
 
-    types = Types()                                # share/v2vouch/lcmtypes, or Types("lcmtypes")
+    types = Types()                                # or Types("folder/of/lcmtypes")
     for utime, channel, message in read_log("drive.lcm", types): ...
     for utime, channel, message in listen(types, channels={"TRACKS_LOCAL"}): ...
 """
@@ -25,34 +25,54 @@ SHORT, FRAGMENT = 0x4C433032, 0x4C433033
 LARGEST = 64 << 20
 
 
+def _folder_of_types(folder):
+    here = os.path.dirname(os.path.abspath(__file__))
+    shares = [os.environ.get("V2VOUCH_SHARE"), os.path.join(here, "..", ".."),  # The source tree.
+              os.path.join(here, "..", "..", "..", "..", "v2vouch"), "/usr/local/share/v2vouch", "/usr/share/v2vouch"]
+    places = [folder] if folder else [os.path.join(s, n) for s in shares if s for n in ("python", "lcmtypes")]
+    for place in places:
+        if os.path.isdir(os.path.join(place, "v2vouch")):
+            return place
+        if os.path.isdir(place) and any(name.endswith(".lcm") for name in os.listdir(place)):
+            return place
+    raise FileNotFoundError("no message types of V2Vouch: install the package v2vouch, or set V2VOUCH_SHARE")
+
+
+def _make_classes(folder, into):
+    files = sorted(os.path.join(folder, name) for name in os.listdir(folder) if name.endswith(".lcm"))
+    try:
+        subprocess.run(["lcm-gen", "--python", "--ppath", into, *files], check=True)
+    except FileNotFoundError:
+        raise FileNotFoundError("no lcm-gen, which makes Python classes of .lcm files: apt install liblcm-bin") from None
+
+
 class Types:
     """Message classes by name (types.radar_scan_t) and by fingerprint (types.decode(bytes))."""
 
     def __init__(self, folder=None):
-        here = os.path.dirname(os.path.abspath(__file__))
-        places = [folder] if folder else [
-            os.path.join(os.environ.get("V2VOUCH_SHARE", "/nowhere"), "lcmtypes"),
-            os.path.join(here, "..", "..", "lcmtypes"), "/usr/local/share/v2vouch/lcmtypes",
-            "/usr/share/v2vouch/lcmtypes"]
-        folder = next((place for place in places if os.path.isdir(place)), None)
-        if folder is None:
-            raise FileNotFoundError("no .lcm files of V2Vouch: install v2vouch-dev or set V2VOUCH_SHARE")
-        files = [os.path.join(folder, name) for name in os.listdir(folder) if name.endswith(".lcm")]
-        made = tempfile.mkdtemp(prefix="v2vouch_types_")
+        """folder: of .lcm files, or of the classes made of them; default: what is installed or beside this file."""
+        made, kept = None, sys.dont_write_bytecode
+        sys.dont_write_bytecode = True  # Nothing of ours is left in folders of the system.
         try:
-            subprocess.run(["lcm-gen", "--python", "--ppath", made, *sorted(files)], check=True)
-            sys.path.insert(0, made)
-            package = importlib.import_module("v2vouch")
+            classes = _folder_of_types(folder)
+            if not os.path.isdir(os.path.join(classes, "v2vouch")):
+                files, classes = classes, tempfile.mkdtemp(prefix="v2vouch_types_")
+                made = classes
+                _make_classes(files, made)
+            sys.path.insert(0, classes)
             self._by_print = {}
-            for file in files:
-                name = os.path.basename(file)[:-len(".lcm")]
+            for file in sorted(os.listdir(os.path.join(classes, "v2vouch"))):
+                name = file[:-len(".py")]
+                if not file.endswith("_t.py"):
+                    continue
                 kind = getattr(importlib.import_module("v2vouch." + name), name)
                 setattr(self, name, kind)
                 self._by_print[kind()._get_packed_fingerprint()] = kind
-            assert package
+            sys.path.remove(classes)
         finally:
-            sys.path[:] = [place for place in sys.path if place != made]
-            shutil.rmtree(made)
+            sys.dont_write_bytecode = kept
+            if made:
+                shutil.rmtree(made)
 
     def decode(self, data):
         """The message, or None: no type of ours, cut short, or damaged."""

@@ -61,13 +61,13 @@ def test_the_consumer_merges_by_local_id_and_knows_what_it_does_not_see():
     around.take("TRACKS_PRIORITY", listed(10, track(id=7, local_id=2), track(id=8, local_id=0), suspect))
     assert [(t.id, p) for t, p in around.vehicles()] == [(7, True), (8, True), (1, False)]
     around.take("TRACKS_LOCAL", listed(9, track(id=3)))  # Late on the way.
-    assert len(around.local.tracks) == 2
+    assert len(around.lists["TRACKS_LOCAL"].tracks) == 2
     around.take("TRACKS_LOCAL", listed(10, track(id=4)))  # A revision.
-    assert [t.id for t in around.local.tracks] == [4]
+    assert [t.id for t in around.lists["TRACKS_LOCAL"].tracks] == [4]
     for first, last, state in ((-1.0, 1.0, TYPES.sector_health_t.BLIND), (3.0, -3.0, TYPES.sector_health_t.WATCHED)):
         sector = TYPES.sector_health_t()
         sector.from_rad, sector.to_rad, sector.state = first, last, state
-        around.local.sectors.append(sector)
+        around.lists["TRACKS_LOCAL"].sectors.append(sector)
     assert around.is_blind(0.0) and not around.is_blind(math.pi) and around.is_blind(2.0)
 
 
