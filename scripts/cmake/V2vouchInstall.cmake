@@ -83,6 +83,25 @@ function(v2vouch_install_shared_files)
   endwhile()
 endfunction()
 
+# Examples, and the message classes that those in Python use: ready-made, so that Python alone suffices.
+function(v2vouch_install_examples)
+  get_target_property(files v2vouch_lcmtypes_headers V2VOUCH_LCM_FILES)
+  set(out "${PROJECT_BINARY_DIR}/packaging/python")
+  add_custom_command(OUTPUT "${out}/stamp"
+    COMMAND ${CMAKE_COMMAND} -E rm -rf "${out}"
+    COMMAND ${CMAKE_COMMAND} -E make_directory "${out}"
+    COMMAND "${LCM_GEN}" --python --ppath "${out}" ${files}
+    COMMAND ${CMAKE_COMMAND} -E touch "${out}/stamp"
+    DEPENDS ${files} COMMENT "lcm-gen --python" VERBATIM)
+  add_custom_target(v2vouch_python_types ALL DEPENDS "${out}/stamp")
+  install(DIRECTORY "${out}/v2vouch" DESTINATION "${CMAKE_INSTALL_DATADIR}/v2vouch/python"
+    COMPONENT programs FILES_MATCHING PATTERN "*.py")
+  install(DIRECTORY examples/ DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/v2vouch/examples"
+    COMPONENT programs
+    FILE_PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ
+    PATTERN "__pycache__" EXCLUDE)
+endfunction()
+
 # Headers of the message types; the wire library (bytes to plain structs in SI units, hostile bytes
 # refused) with the rooms it stands on, as one archive; CMake package and pkg-config files.
 function(v2vouch_install_development_files)

@@ -27,7 +27,7 @@ Tells a car which vehicles are around it, and which of those it may rely on
 even when its own sensors lose sight of them. Radar and camera vouch for a
 vehicle that talks by radio; only then may its messages keep it alive.
 Messages travel over LCM.")
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "v2vouch-view, liblcm-bin, nftables")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "v2vouch-view, liblcm-bin, nftables, python3")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA
   "${PROJECT_SOURCE_DIR}/scripts/packaging/postinst"
   "${PROJECT_SOURCE_DIR}/scripts/packaging/prerm"

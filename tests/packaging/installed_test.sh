@@ -99,7 +99,16 @@ eval "g++ -std=c++17 types_only.cc -o by_pkg_config $(pkg-config --cflags --libs
   fail "pkg-config v2vouch"
 cmake -S examples/cpp -B examples_build -DCMAKE_PREFIX_PATH="${prefix}" >cmake.txt 2>&1 &&
   cmake --build examples_build >>cmake.txt 2>&1 || { cat cmake.txt; fail "examples by find_package"; }
-examples_build/consume_lists "file://tracks.lcm?speed=0" | grep -q "LOCAL " || fail "C++ consumer of a log"
+examples_build/consume_lists "file://tracks.lcm?speed=0" >consumer.txt && grep -q "LOCAL " consumer.txt ||
+  fail "C++ consumer of a log"
+# The Python consumer as it is installed: nothing but Python, no lcm-gen.
+mkdir without
+printf '#!/bin/sh\nexit 1\n' >without/lcm-gen
+chmod +x without/lcm-gen
+PATH="${place}/work/without:${PATH}" python3 "${prefix}/share/doc/v2vouch/examples/python/consume_lists.py" \
+  tracks.lcm >consumer.txt &&
+  grep -q "LOCAL " consumer.txt || fail "Python consumer of a log"
+if find "${prefix}" -name __pycache__ | grep .; then fail "Python has left something behind"; fi
 for program in cmake_build/types_only cmake_build/wire ./by_pkg_config; do
   [[ "$("${program}")" == good ]] || fail "${program}"
 done
