@@ -25,6 +25,7 @@ finish() {
     kill "${children[@]}" 2>/dev/null || true
     sleep 1
     kill -KILL "${children[@]}" 2>/dev/null || true
+    wait "${children[@]}" 2>/dev/null || true
   fi
   rm -rf "${work}"
 }
@@ -82,11 +83,24 @@ export V2VOUCH_CAMPAIGN="${campaign}"
 "${root}/scripts/campaign_slurm" 2 "${work}/array" "${tiny[@]}" >"${work}/array.json" ||
   { cat "${work}"/array/slurm-*.txt; exit 1; }
 cmp "${work}/whole.json" "${work}/array.json"
-# As if a task had been ended: one of its runs is missing. The same call does it alone.
-runs=("${work}"/array/runs/*.json)
-stamp="$(stat -c %Y.%y "${runs[1]}")"
-rm "${runs[0]}"
-"${root}/scripts/campaign_slurm" 2 "${work}/array" "${tiny[@]}" >"${work}/again.json"
-cmp "${work}/whole.json" "${work}/again.json"
-[[ "$(stat -c %Y.%y "${runs[1]}")" == "${stamp}" ]] || { echo "a finished run was run again"; exit 1; }
-echo "an array of 2 tasks: the same figures; an ended task is taken up again"
+
+# A task that is ended on its way (scancel, as a time limit or a lost node would): told, and the same call runs
+# what is missing, that alone.
+more=(--attacks A8/jump_10m --honest none --scenarios smoke --seeds 8 --json)
+"${campaign}" "${more[@]}" --out "${work}/whole8" >"${work}/whole8.json" 2>/dev/null
+code=0
+"${root}/scripts/campaign_slurm" 2 "${work}/array8" "${more[@]}" >"${work}/ended.json" 2>"${work}/ended.txt" & submitted=$!
+finished() { find "${work}/array8/runs" -name '*.json' 2>/dev/null | wc -l; }
+for ((i = 0; i < 600; ++i)); do (($(finished) >= 2)) && break; sleep 0.1; done
+scancel --name=v2vouch-campaign
+wait "${submitted}" || code=$?
+left="$(finished)"
+((left < 16)) || { echo "all 16 runs were through before a task could be ended"; exit 1; }
+((code == 1)) && grep -q "a task failed" "${work}/ended.txt" ||
+  { cat "${work}/ended.txt"; echo "an ended task was not told: exit code ${code}"; exit 1; }
+touch "${work}/mark"
+"${root}/scripts/campaign_slurm" 2 "${work}/array8" "${more[@]}" >"${work}/again.json"
+cmp "${work}/whole8.json" "${work}/again.json"
+anew="$(find "${work}/array8/runs" -name '*.json' -newer "${work}/mark" | wc -l)"
+((anew == 16 - left)) || { echo "${anew} runs were run, $((16 - left)) were missing"; exit 1; }
+echo "an array of 2 tasks: the same figures; ended after ${left} of 16 runs, the same call did the other ${anew}"
