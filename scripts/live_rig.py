@@ -120,7 +120,7 @@ class Program:
         with open(os.path.join(self.folder, self.name + ".txt"), encoding="utf-8", errors="replace") as file:
             return file.read()
 
-    def says(self, word, most_s=30.0):
+    def says(self, word, most_s=120.0):
         """Waits for that word of a program that has just been started. False: it ended, or never said it."""
         begin = time.monotonic()
         while word not in self.said():
