@@ -43,11 +43,12 @@ struct Server::Impl {
 
   view::Hub& hub;
   view::AccessRules rules;
-  asio::io_context context{1};
-  tcp::acceptor acceptor{context};
   std::size_t connections = 0;
   std::set<Client*> clients;
   Clock::time_point last_client = Clock::now();
+  // Behind what its handlers use: those of clients that are still there end with it.
+  asio::io_context context{1};
+  tcp::acceptor acceptor{context};
 };
 
 /// Counts a connection as long as it lives.

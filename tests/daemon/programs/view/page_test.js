@@ -275,6 +275,18 @@ test("garbage, half requests and oversized messages end their own connection onl
   }, 12000);
 });
 
+test("the program ends cleanly while clients are there", async () => {
+  const view = await startView(log.lists);
+  const ended = new Promise((resolve) => view.child.on("exit", (code, signal) => resolve([code, signal])));
+  for (const name of ["foxglove.sdk.v1", "foxglove.websocket.v1"]) {
+    const socket = new WebSocket(view.foxglove, [name]);
+    socket.on("error", () => {});
+    await new Promise((resolve) => socket.on("open", resolve));
+  }
+  view.child.kill("SIGTERM");
+  assert.deepStrictEqual(await ended, [0, null]);
+});
+
 test("two pages, a reload, and a client that reads nothing cost no memory", async () => {
   const one = await openPage(log.page), two = await openPage(log.page);
   await control(one, true, 1, 0.5);
