@@ -285,7 +285,9 @@ TEST(Warner, ATurnIsFollowedAtOnce) {
     list.targets = {target};
     warner.OnLocal(list);
     last = warner.OnPriority(list)->warnings.size();
-    if (k == 19) EXPECT_EQ(last, 1u);
+    if (k == 19) {
+      EXPECT_EQ(last, 1u);
+    }
   }
   EXPECT_EQ(last, 0u);
 }

@@ -151,7 +151,7 @@ std::unique_ptr<World> Attacked(const std::string& overlay, std::uint64_t seed) 
   return world;
 }
 
-class UnderAttack : public testing::TestWithParam<const char*> {};
+class UnderAttack : public ::testing::TestWithParam<const char*> {};
 
 // Whatever is lied by radio, the ego's own sensors, its GNSS and the truth keep every byte.
 TEST_P(UnderAttack, AllButTheRadioKeepsEveryByte) {
@@ -204,7 +204,7 @@ TEST_P(UnderAttack, HonestVehiclesSayTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Some, UnderAttack,
-                         testing::Values("A01_ahead_30m", "A05_lateral_8m", "A11_grid_5",
+                         ::testing::Values("A01_ahead_30m", "A05_lateral_8m", "A11_grid_5",
                                          "A12_three_ids", "A22_malformed_5000"));
 
 TEST(Simulation, LostFramesAndWeakDetectionThinTheSensors) {
@@ -268,7 +268,7 @@ TEST(LeftTurn, CriticalCarIsSeenLongThenHiddenThreeToFiveSecondsThenSeenAgain) {
   EXPECT_GE(seen_s["CAMERA_FRONT"], 6.0);
 }
 
-class StaticReturns : public testing::TestWithParam<const char*> {};
+class StaticReturns : public ::testing::TestWithParam<const char*> {};
 
 // Standing returns: Doppler explained by the antenna's own motion, taken from the truth.
 TEST_P(StaticReturns, EightAtLeastInEveryScanOfEveryRadar) {
@@ -296,7 +296,7 @@ TEST_P(StaticReturns, EightAtLeastInEveryScanOfEveryRadar) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, StaticReturns, testing::Values("left_turn", "urban", "highway"));
+INSTANTIATE_TEST_SUITE_P(All, StaticReturns, ::testing::Values("left_turn", "urban", "highway"));
 
 TEST(IdealPoints, GiveOneDetectionPerVehicleAndNothingElse) {
   const auto world = Shipped("left_turn", 1, SensorMode::kIdealPoints);
