@@ -121,7 +121,9 @@ TEST_F(Programs, WithStderrFullOrClosedTheyWorkAsEver) {
 
 TEST_F(Programs, AWrongLcmUrlIsNamedByEach) {
   for (const std::string program : kPrograms) {
-    const std::string command = program == "v2vouch-sim" ? " run smoke --live" : "";
+    const std::string command = program == "v2vouch-sim"   ? " run smoke --live"
+                                : program == "v2vouch-log" ? " record folder"
+                                                           : "";
     // These have no such option.
     if (program == "v2vouch-import" || program == "v2vouch-baseline" || program == "v2vouch-sift") {
       continue;

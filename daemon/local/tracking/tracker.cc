@@ -146,7 +146,7 @@ void Tracker::AddPair(std::size_t track, std::size_t measurement, const Likeliho
   pairs_.push_back({row, column, existence * std::exp(std::min(log_ratio, 200.0))});
 }
 
-void Tracker::Associate(std::size_t measurements) {
+void Tracker::Associate(std::size_t measurements, Proof proof) {
   lone_.assign(tracks_.size(), 0.0);
   const auto best = solver_.Solve(costs_, tracks_.size(), measurements, lone_);
   assigned_.assign(best.begin(), best.end());
@@ -155,7 +155,7 @@ void Tracker::Associate(std::size_t measurements) {
     const double seen = marginals_.detected()[i];
     const double unseen = ExistenceAfterMiss(tracks_[i].existence, missing_[i]);
     double next = std::min(seen + (1.0 - seen) * unseen, kSureExistence);
-    if (tracks_[i].is_confirmed) {
+    if (proof == Proof::kRepeated && tracks_[i].is_confirmed) {
       const double odds = kMostGain * tracks_[i].existence / (1.0 - tracks_[i].existence);
       next = std::min(next, odds / (1.0 + odds));
     }

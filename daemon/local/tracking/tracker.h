@@ -255,7 +255,9 @@ class Tracker {
   [[nodiscard]] RadarMeasurement Given(std::size_t track, const RadarMeasurement& z) const;
   [[nodiscard]] CameraMeasurement Given(std::size_t track, const CameraMeasurement& z) const;
   [[nodiscard]] BoxMeasurement Given(std::size_t track, const BoxMeasurement& z) const;
-  void Associate(std::size_t measurements);
+  /// Whether a hit is independent proof: radars and cameras see the same ghosts again and again.
+  enum class Proof { kIndependent, kRepeated };
+  void Associate(std::size_t measurements, Proof proof);
   void TakeFaces(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   void AbsorbClusters(const RadarLook& look, std::span<const RadarMeasurement> measurements);
   [[nodiscard]] bool Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,

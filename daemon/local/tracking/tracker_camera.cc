@@ -97,7 +97,7 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
       GatePair(i, j, look, z);
     }
   }
-  Associate(measurements.size());
+  Associate(measurements.size(), Proof::kRepeated);
 
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     double& proven = hidden_[i].proven;

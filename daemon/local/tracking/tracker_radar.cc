@@ -120,7 +120,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
       }
     });
   }
-  Associate(measurements.size());
+  Associate(measurements.size(), Proof::kRepeated);
   AbsorbClusters(look, measurements);
   TakeFaces(look, measurements);
   JoinOwned(look, measurements);

@@ -54,7 +54,7 @@ void Tracker::UpdateWhole(const WholeFrame& frame, std::span<const Measurement> 
       }
     });
   }
-  Associate(measurements.size());
+  Associate(measurements.size(), Proof::kIndependent);
 
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     // Whatever other sensors made likely, a frame of whole vehicles judges it.

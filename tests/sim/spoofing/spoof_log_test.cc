@@ -115,9 +115,10 @@ TEST_F(SpoofLog, MessagesTruthsVerdictsAndReportsAreRead) {
   EXPECT_FALSE(log.reports[1].is_accusation);
 }
 
-TEST_F(SpoofLog, PriorityIsTheOnlyListReadForSpoofing) {
+TEST_F(SpoofLog, MessagesAreReadForSpoofingAlone) {
   const RunLog spoof = Read(ReadScope::kSpoof);
-  EXPECT_TRUE(spoof.lists[Index(ListKind::kLocal)].empty());
+  EXPECT_EQ(spoof.lists[Index(ListKind::kLocal)].size(), 1u);
+  EXPECT_FALSE(spoof.bsm_truths.empty());
   EXPECT_EQ(spoof.lists[Index(ListKind::kPriority)].size(), 1u);
   const RunLog all = Read(ReadScope::kAll);
   EXPECT_EQ(all.lists[Index(ListKind::kLocal)].size(), 1u);
