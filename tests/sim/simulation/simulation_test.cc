@@ -205,7 +205,7 @@ TEST_P(UnderAttack, HonestVehiclesSayTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(Some, UnderAttack,
                          ::testing::Values("A01_ahead_30m", "A05_lateral_8m", "A11_grid_5",
-                                         "A12_three_ids", "A22_malformed_5000"));
+                                           "A12_three_ids", "A22_malformed_5000"));
 
 TEST(Simulation, LostFramesAndWeakDetectionThinTheSensors) {
   Scenario scenario;
