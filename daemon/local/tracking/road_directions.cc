@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/models/measurement_model.h"
 
 namespace v2vouch {
 namespace {
@@ -41,8 +42,7 @@ std::optional<double> RoadDirections::DirectionAt(const Eigen::Vector2d& p_O,
     const Eigen::Vector2d d = p_O - point.p_O;
     const double beside_m = std::abs(point.forward.x() * d.y() - point.forward.y() * d.x());
     if (beside_m >= least_m || std::abs(point.forward.dot(d)) > kAlong_m) continue;
-    const double turn_rad = std::abs(AngleDifference(point.yaw_rad, axis_rad));
-    if (std::min(turn_rad, kPi - turn_rad) > kSameWay_rad) continue;
+    if (std::abs(AxisDifference(point.yaw_rad, axis_rad)) > kSameWay_rad) continue;
     least_m = beside_m;
     best = point.yaw_rad;
   }

@@ -18,8 +18,8 @@ class RoadDirections {
  public:
   static constexpr std::size_t kMost = 160;
 
-  /// Something drives along `yaw_rad` at `p_O`. Points closer than kSpacing_m to one with much the
-  /// same direction renew that one.
+  /// Something drives along `yaw_rad` at `p_O`. A point near one with much the same direction adds
+  /// nothing.
   void Note(const Eigen::Vector2d& p_O, double yaw_rad);
 
   /// Direction of the way that passes nearest beside `p_O`, of those along `axis_rad` or against

@@ -18,8 +18,6 @@ namespace v2vouch {
 ///    model that needs one.
 /// 2. *vehicle* (VehicleFilter): CTRA with size, from the moment the velocity points somewhere
 ///    (heading sigma below 0.15 rad) or is known to be none on. A vehicle that stops keeps its yaw.
-///    One that was never seen moving keeps its point beside it: where that moves as the vehicle,
-///    whose axis is a guess, cannot, the vehicle starts again from the point.
 class TrackFilter {
  public:
   static TrackFilter FromRadar(const RadarLook& look, const RadarMeasurement& measurement,
@@ -59,11 +57,8 @@ class TrackFilter {
   /// velocity.
   bool Update(const BoxMeasurement& measurement);
 
-  /// Which way what stands there most likely faces; of no account to a point or what was seen
-  /// driving.
-  void FaceTowards(double yaw_rad) {
-    if (is_vehicle_) vehicle_.FaceTowards(yaw_rad);
-  }
+  /// Which way a vehicle that was never seen driving most likely faces.
+  void FaceTowards(double yaw_rad) { vehicle_.FaceTowards(yaw_rad); }
 
   /// Takes the class's typical size for dimensions without a measurement.
   void SetClass(ObjectClass object_class);

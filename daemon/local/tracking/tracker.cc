@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 #include "daemon/common/base/angle.h"
 #include "daemon/local/tracking/chi_square.h"

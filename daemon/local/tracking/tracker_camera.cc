@@ -15,6 +15,7 @@ namespace {
 // Clutter of a camera: boxes anywhere in the picture, width and depression spread over these.
 constexpr double kBoxWidthSpan_rad = 0.3;
 constexpr double kDepressionSpan_rad = 0.2;
+// Detection probability of a picture that should show the vehicle.
 constexpr double kExpectedInPicture = 0.7;
 constexpr std::size_t kMostBoxes = 128;
 

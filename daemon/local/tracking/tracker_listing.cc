@@ -19,6 +19,7 @@ constexpr double kDrives_mps = 3.0;
 constexpr double kWalks_m = 2.0;
 // More that are not listed are not kept: every one of them costs as much as a vehicle.
 constexpr std::size_t kMostGuesses = 128;
+
 }  // namespace
 
 // Existence must outweigh the error that the cut-off metric would find.
@@ -43,8 +44,8 @@ void Tracker::LearnRoad(const EgoState& ego) {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const LocalTrack& track = tracks_[i];
     if (!track.is_confirmed || !hidden_[i].filter.has_driven()) continue;
-    if (hidden_[i].last_hit != now_ || ClassExtent(track.object_class).length_m < kWalks_m)
-      continue;
+    if (hidden_[i].last_hit != now_) continue;
+    if (ClassExtent(track.object_class).length_m < kWalks_m) continue;
     const Eigen::Vector2d velocity = hidden_[i].filter.velocity_O();
     if (velocity.norm() < kDrives_mps) continue;
     roads_.Note(hidden_[i].filter.position_O(), std::atan2(velocity.y(), velocity.x()));
@@ -53,9 +54,8 @@ void Tracker::LearnRoad(const EgoState& ego) {
 
 void Tracker::FaceAsTheRoad(std::size_t track) {
   TrackFilter& filter = hidden_[track].filter;
-  if (filter.has_driven() || !filter.is_vehicle() || settings_.point_targets ||
-      hidden_[track].last_hit != now_)
-    return;
+  if (!filter.is_vehicle() || filter.has_driven()) return;
+  if (settings_.point_targets || hidden_[track].last_hit != now_) return;
   const double axis_rad = tracks_[track].state_O.mean[kYaw];
   if (const auto yaw = roads_.DirectionAt(filter.position_O(), axis_rad)) {
     filter.FaceTowards(*yaw);

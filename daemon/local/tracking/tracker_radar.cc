@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "daemon/common/base/angle.h"
@@ -19,7 +18,7 @@ namespace {
 constexpr double kDopplerSpan_mps = 60.0;
 // Standing returns share a narrow band of ground range rate.
 constexpr double kStaticDopplerSpan_mps = 1.2;
-// Detection probability of a frame in clear view, and of a picture that should show the vehicle.
+// Detection probability of a scan in clear view.
 constexpr double kClearLook = 0.4;
 // An echo between two vehicles against twice the nearer one's range, bearing and range rate.
 constexpr double kEchoRange_m = 2.0;

@@ -64,7 +64,6 @@ void VehicleFilter::TurnRound() {
 }
 
 void VehicleFilter::FaceTowards(double yaw_rad) {
-  if (has_driven_) return;
   for (std::size_t i = 0; i < count_; ++i) {
     ExtendedState& state = components_[i].state;
     if (std::abs(AngleDifference(state.mean[kYaw], yaw_rad)) > 0.5 * kPi + kSurelyTurned_rad) {

@@ -130,7 +130,7 @@ VehicleFilter::Box VehicleFilter::Judge(const Look& look, const Measurement& z,
     if (!named) return Box::kFits;
     const auto odd_size = EvaluateOddSize(look, z, *named, best());
     if (!odd_size) return Box::kFits;
-    const auto odd_turn = EvaluateOddTurn(look, z, best());
+    const auto odd_turn = EvaluateOddTurn(*model, best());
     return odd_turn && CostOf(*odd_turn) < CostOf(*odd_size) ? Box::kTurned : Box::kOtherSize;
   } else {
     return Box::kFits;
@@ -217,7 +217,7 @@ void VehicleFilter::NoteDepth(const RadarMeasurement&, const Linearized& model) 
   usual_depth_ += kDepthMemory * (depth - usual_depth_);
 }
 
-// One more scan takes the memory of the depth to kNearerSigmas at the earliest from here.
+// One more scan takes the memory of the depth to kOffSigmas at the earliest from here.
 bool VehicleFilter::may_move_face() const {
   return (1.0 - kDepthMemory) * std::abs(usual_depth_) + kDepthMemory * kMostDepth >= kOffSigmas;
 }

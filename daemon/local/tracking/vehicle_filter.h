@@ -71,7 +71,7 @@ class VehicleFilter {
   /// turn boxes by a quarter or cut them short.
   [[nodiscard]] std::optional<Likelihood> Evaluate(const BoxMeasurement& z) const;
   bool Update(const BoxMeasurement& z);
-  /// Not seen in motion yet: its front is taken to be the end towards `yaw_rad`.
+  /// Of a vehicle not seen in motion yet: its front is taken to be the end towards `yaw_rad`.
   void FaceTowards(double yaw_rad);
   void AssumeSpeed(double speed_mps, double sigma_mps);
   /// One axis is left, and its front is known.

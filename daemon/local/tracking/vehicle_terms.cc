@@ -147,13 +147,9 @@ ExtendedState Turned(const ExtendedState& state) {
   turned.covariance(kYaw, kYaw) += kOddTurn_rad * kOddTurn_rad;
   return turned;
 }
-std::optional<Likelihood> EvaluateOddTurn(const CameraLook& look, const CameraMeasurement& z,
-                                          const ExtendedState& state) {
+std::optional<Likelihood> EvaluateOddTurn(const Linearized& model, const ExtendedState& state) {
   if (std::abs(state.mean[kSpeed]) < kTurning_mps) return std::nullopt;
-  const ExtendedState turned = Turned(state);
-  const auto model = Linearize(turned, turned.assumed_extent(), look, z);
-  if (!model) return std::nullopt;
-  auto likelihood = EvaluateExtended(*model, turned);
+  auto likelihood = EvaluateExtended(model, Turned(state));
   if (likelihood) likelihood->log_det += kOddSizeCost;
   return likelihood;
 }

@@ -72,7 +72,7 @@ std::optional<Likelihood> EvaluateOddSize(const CameraLook& look, const CameraMe
 /// A moving vehicle whose box is odd may have turned more than its returns told: the same, as
 /// likely as a wrong size, with a heading that is open.
 ExtendedState Turned(const ExtendedState& state);
-std::optional<Likelihood> EvaluateOddTurn(const CameraLook& look, const CameraMeasurement& z,
-                                          const ExtendedState& state);
+/// @param model of the box at `state`, whose mean no turn changes.
+std::optional<Likelihood> EvaluateOddTurn(const Linearized& model, const ExtendedState& state);
 
 }  // namespace v2vouch

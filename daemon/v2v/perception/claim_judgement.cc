@@ -34,15 +34,15 @@ std::uint64_t TrackToCompareWith(const V2vView& view, const SenderRecord& record
   return may_be_it ? pair->track_id : 0;
 }
 
-// The LOCAL track's state at `at`, with the size that the sender tells.
-std::optional<KinematicState> SensedAt(const V2vView& view, const SenderRecord& record,
-                                       std::uint64_t local_id, Timestamp at) {
+// The LOCAL track at `at`, with the size that the sender tells.
+std::optional<LocalTrack> SensedAt(const V2vView& view, const SenderRecord& record,
+                                   std::uint64_t local_id, Timestamp at) {
   const TrackSnapshot* seen = view.tracks.Find(local_id);
   const double dt_s = ToSeconds(at - view.tracks.stamp());
   if (seen == nullptr || dt_s > TrackSnapshots::kMaxAge_s) return std::nullopt;
-  KinematicState state = GivenClaimedSize(seen->track, &record, view.config.trust).state_O;
-  if (dt_s > 0.0) PredictCtra(state, dt_s, view.config.filter.motion);
-  return state;
+  LocalTrack track = GivenClaimedSize(seen->track, &record, view.config.trust);
+  if (dt_s > 0.0) PredictCtra(track.state_O, dt_s, view.config.filter.motion);
+  return track;
 }
 
 }  // namespace
@@ -54,9 +54,9 @@ bool IsFromAnotherDevice(const V2vView& view, SenderRecord& record, const Priori
   const ResidualHistory& history = record.trust.history();
   const auto sensed = SensedAt(view, record, vehicle->local_id, here.stamp);
   if (!sensed || !history.is_settled()) return false;
-  const Eigen::Vector2d off_O = here.p_O - sensed->mean.head<2>() - history.mean_O();
+  const Eigen::Vector2d off_O = here.p_O - sensed->state_O.mean.head<2>() - history.mean_O();
   const double limit_m = config.odd_claim_m + 2.0 * std::sqrt(0.5 * here.noise.trace()) +
-                         config.stale_position_s * std::abs(sensed->mean[kSpeed]);
+                         config.stale_position_s * std::abs(sensed->state_O.mean[kSpeed]);
   if (off_O.norm() <= limit_m) {
     record.odd_claims = 0;
     return false;
@@ -96,16 +96,15 @@ Comparison CompareWithSensors(const V2vView& view, SenderRecord& record,
   const TrustConfig& config = view.config.trust;
   Comparison comparison;
   const std::uint64_t local_id = TrackToCompareWith(view, record, vehicle);
-  const auto state = SensedAt(view, record, local_id, here.stamp);
-  if (!state) return comparison;
+  const auto sensed = SensedAt(view, record, local_id, here.stamp);
+  if (!sensed) return comparison;
   comparison.is_made = true;
   // Residual history restarts when the associated track changes.
   if (vehicle == nullptr && record.compared_id != local_id) record.trust.ForgetResiduals();
   record.compared_id = local_id;
   const TrackSnapshot& seen = *view.tracks.Find(local_id);
-  CoObservation observation = ForTrust(here, *state);
-  observation.extent_sigma_m =
-      0.5 * GivenClaimedSize(seen.track, &record, config).extent.length_sigma_m;
+  CoObservation observation = ForTrust(here, sensed->state_O);
+  observation.extent_sigma_m = 0.5 * sensed->extent.length_sigma_m;
   observation.is_partial = seen.is_partial && record.trust.is_relied_on();
   observation.is_doubtful = seen.is_doubtful;
   observation.is_plausible = IsSeenBySensors(view, record);
@@ -118,7 +117,8 @@ Comparison CompareWithSensors(const V2vView& view, SenderRecord& record,
                           record.place.log_ratio() <= config.place.lasting_log_ratio;
   comparison.is_track_switch = !record.trust.OnCoObservation(observation, may_accuse, config);
   comparison.residual_O = observation.residual_O;
-  comparison.covariance_O = state->covariance.topLeftCorner<2, 2>() + here.noise + here.alignment;
+  comparison.covariance_O =
+      sensed->state_O.covariance.topLeftCorner<2, 2>() + here.noise + here.alignment;
   return comparison;
 }
 

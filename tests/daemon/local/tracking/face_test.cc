@@ -37,16 +37,26 @@ BoxMeasurement LorryTooFar() {
   return box;
 }
 
+// A radar at the ego's origin, looking ahead.
+RadarConfig AtOrigin() {
+  RadarConfig radar;
+  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
+  return radar;
+}
+
+class NearFaceTest : public ::testing::Test {
+ protected:
+  const RadarConfig radar_ = AtOrigin();
+  const EgoState ego_;
+  const RadarLook look{ego_, radar_};
+};
+
 double NearFace(const VehicleFilter& filter) {
   const ExtendedState& state = filter.best();
   return state.mean[kX] - 0.5 * state.mean[ExtendedState::kLength];
 }
 
-TEST(NearFace, ReturnsBeforeItScanAfterScanBringAVehicleToWhereTheyAre) {
-  RadarConfig radar;
-  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
-  const EgoState ego;
-  const RadarLook look(ego, radar);
+TEST_F(NearFaceTest, ReturnsBeforeItScanAfterScanBringAVehicleToWhereTheyAre) {
   VehicleFilter filter;
   filter.StartAt(LorryTooFar());
   for (int scan = 0; scan < 60; ++scan) {
@@ -57,11 +67,7 @@ TEST(NearFace, ReturnsBeforeItScanAfterScanBringAVehicleToWhereTheyAre) {
 }
 
 // Seen obliquely, so that the length moves the centre across the line of sight as well.
-TEST(NearFace, TheCovarianceStaysPositiveHoweverOftenItIsSetAnew) {
-  RadarConfig radar;
-  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
-  const EgoState ego;
-  const RadarLook look(ego, radar);
+TEST_F(NearFaceTest, TheCovarianceStaysPositiveHoweverOftenItIsSetAnew) {
   VehicleFilter filter;
   BoxMeasurement box = LorryTooFar();
   box.yaw_rad = 0.4;
@@ -76,11 +82,7 @@ TEST(NearFace, TheCovarianceStaysPositiveHoweverOftenItIsSetAnew) {
 
 // A follower whose centre was learnt too near as it turned: its length would have to explain the
 // rest, which a radar may not learn.
-TEST(NearFace, ReturnsBehindItScanAfterScanMoveACarThatDrives) {
-  RadarConfig radar;
-  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
-  const EgoState ego;
-  const RadarLook look(ego, radar);
+TEST_F(NearFaceTest, ReturnsBehindItScanAfterScanMoveACarThatDrives) {
   PoseMeasurement pose;
   pose.x_m = 30.0 + 0.5 * 4.6 - 1.6;
   pose.y_m = 0.0;
@@ -97,11 +99,7 @@ TEST(NearFace, ReturnsBehindItScanAfterScanMoveACarThatDrives) {
   EXPECT_NEAR(NearFace(filter), 30.0, 0.5);
 }
 
-TEST(NearFace, ReturnsOutOfAnothersBoxMoveNoVehicle) {
-  RadarConfig radar;
-  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
-  const EgoState ego;
-  const RadarLook look(ego, radar);
+TEST_F(NearFaceTest, ReturnsOutOfAnothersBoxMoveNoVehicle) {
   VehicleFilter own, anothers;
   own.StartAt(LorryTooFar());
   anothers = own;
@@ -116,11 +114,7 @@ TEST(NearFace, ReturnsOutOfAnothersBoxMoveNoVehicle) {
   EXPECT_GT(NearFace(anothers), NearFace(own) + 0.5);
 }
 
-TEST(NearFace, ScatterBehindItLeavesAVehicleWhereItIs) {
-  RadarConfig radar;
-  radar.x_m = radar.y_m = radar.yaw_rad = 0.0;
-  const EgoState ego;
-  const RadarLook look(ego, radar);
+TEST_F(NearFaceTest, ScatterBehindItLeavesAVehicleWhereItIs) {
   VehicleFilter filter;
   BoxMeasurement box = LorryTooFar();
   box.x_m = kFace_m + 5.5;
