@@ -102,10 +102,7 @@ void ExpectGates(const evaluation::Evaluation& figures, const std::string& what)
   for (const evaluation::Gate& gate : figures.gates) {
     const bool is_missed = gate.name.find("missed_share") != std::string::npos;
     const bool is_ratio = gate.name == "priority_localisation_ratio";  // 2.8 in the mixed car.
-    // 0.07 in the mixed car: for 2 s an old track of a parked car that came to be hidden, beside
-    // its new one.
-    const bool is_false = gate.name == "local_false_per_instant";
-    const double limit = is_missed ? 0.4 : is_ratio ? 3.5 : is_false ? 0.1 : gate.limit;
+    const double limit = is_missed ? 0.4 : is_ratio ? 3.5 : gate.limit;
     EXPECT_LE(gate.value, limit) << what << gate.name;
   }
 }

@@ -26,7 +26,8 @@ constexpr double kMostDepth = 6.0;
 // many standard deviations and metres, they say where it is.
 constexpr double kOffSigmas = 2.0;
 constexpr double kOff_m = 0.7;
-// Behind the face of a longer vehicle they may come from anywhere under it.
+// Behind the face of a longer vehicle they may come from anywhere under it, and those of one that
+// stands are the same in scan after scan, another's among them.
 constexpr double kShallow_m = 7.0;
 
 // Share of its likelihood that a measurement has in the choice of the axis. A stationary vehicle
@@ -223,9 +224,12 @@ bool VehicleFilter::may_move_face() const {
 }
 
 bool VehicleFilter::IsOffFace(const RadarMeasurement& z, const Linearized& model) const {
-  return !z.may_be_anothers && model.O.rows() > 0 && std::abs(usual_depth_) > kOffSigmas &&
-         std::abs(model.y[0]) > kOff_m && (usual_depth_ > 0.0) == (model.y[0] > 0.0) &&
-         (usual_depth_ < 0.0 || (has_driven_ && best().mean[ExtendedState::kLength] < kShallow_m));
+  if (z.may_be_anothers || model.O.rows() == 0) return false;
+  const double deeper_m = model.y[0];
+  if (usual_depth_ < -kOffSigmas) return deeper_m < -kOff_m;
+  const bool is_car_in_motion = has_driven_ && std::abs(best().mean[kSpeed]) > kTurning_mps &&
+                                best().mean[ExtendedState::kLength] < kShallow_m;
+  return is_car_in_motion && usual_depth_ > kOffSigmas && deeper_m > kOff_m;
 }
 
 template std::optional<Likelihood> VehicleFilter::Evaluate(const RadarLook&,
