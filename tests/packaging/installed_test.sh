@@ -63,7 +63,7 @@ for program in "${prefix}"/bin/*; do
   text="$(zcat "${page}" | sed 's/\\-/-/g')"
   completion="${prefix}/share/bash-completion/completions/${name}"
   bash -n "${completion}" || fail "bash completion of ${name}"
-  head -1 "${prefix}/share/zsh/vendor-completions/_${name}" | grep -q "^#compdef ${name}$" ||
+  head -1 "${prefix}/share/zsh/vendor-completions/_${name}" | grep "^#compdef ${name}$" >/dev/null ||
     fail "zsh completion of ${name}"
   if command -v zsh >/dev/null; then zsh -n "${prefix}/share/zsh/vendor-completions/_${name}"; fi
   while read -r option; do

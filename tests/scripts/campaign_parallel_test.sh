@@ -4,7 +4,7 @@
 # piece, as docs/how-to/run-a-campaign.md says. Usage: campaign_parallel_test.sh V2VOUCH_CAMPAIGN
 set -euo pipefail
 campaign="$1"
-if ! parallel --version 2>/dev/null | grep -q '^GNU parallel'; then
+if ! parallel --version 2>/dev/null | grep '^GNU parallel' >/dev/null; then
   echo "SKIPPED: GNU parallel is not installed (package parallel)"
   exit 77
 fi

@@ -69,10 +69,10 @@ for ((i = 0; i < 50; ++i)); do [[ -S "${work}/munge/socket" ]] && break; sleep 0
 slurmctld -D -f "${SLURM_CONF}" >"${work}/slurmctld.txt" 2>&1 & children+=($!)
 slurmd -D -f "${SLURM_CONF}" -N v2vouchtest >"${work}/slurmd.txt" 2>&1 & children+=($!)
 for ((i = 0; i < 100; ++i)); do
-  sinfo --noheader -o %t 2>/dev/null | grep -q idle && break
+  sinfo --noheader -o %t 2>/dev/null | grep idle >/dev/null && break
   sleep 0.2
 done
-if ! sinfo --noheader -o %t 2>/dev/null | grep -q idle; then
+if ! sinfo --noheader -o %t 2>/dev/null | grep idle >/dev/null; then
   tail -n 8 "${work}"/*.txt "${work}/munge/log" >&2 || true
   skip "slurmd cannot run here"
 fi

@@ -92,12 +92,13 @@ Tracker::Place Tracker::FindPlace(const Glances& glances) {
     const double range_m = seen.range_m;
     // A post gives one return to a scan, a vehicle several.
     int returns = 0;
-    std::bitset<kMostSensorsOfAKind * kKeptScans> scans;
+    std::bitset<std::size_t{kMostSensorsOfAKind} * kKeptScans> scans;
     for (const InSight& other : in_sight_) {
       const double behind_m = other.range_m - range_m;
       if (other.at->is_moving || behind_m < 0.0 || behind_m > kDepth_m) continue;
       returns += other.at->returns;
-      scans.set(static_cast<std::size_t>(other.at->radar * kKeptScans + other.at->scans_ago));
+      scans.set(static_cast<std::size_t>(other.at->radar) * kKeptScans +
+                static_cast<std::size_t>(other.at->scans_ago));
     }
     const double per_scan = returns / static_cast<double>(std::max<std::size_t>(scans.count(), 1));
     const double plenty = std::clamp((per_scan - kPostReturns) / kMoreReturns, 0.0, 1.0);
