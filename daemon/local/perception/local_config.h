@@ -4,7 +4,7 @@
 #include "daemon/common/data/vehicle.h"
 #include "daemon/local/odometry/ego_reading_config.h"
 #include "daemon/local/radar/radar_preprocessing.h"
-#include "daemon/local/tracking/tracker.h"
+#include "daemon/local/tracking/tracker_config.h"
 #include "daemon/local/visibility/visibility.h"
 
 namespace v2vouch {

@@ -5,12 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
+#include <limits>
+#include <numeric>
 #include <vector>
 
 #include "daemon/local/tracking/place_index.h"
 
 namespace v2vouch {
+
+/// Standard deviations of the coarse gate; the chi-square gate decides.
+inline constexpr double kCoarseSigmas = 4.7;
+/// A vehicle reaches this share of its length from its centre, and a little more.
+inline constexpr double kLengthReach = 0.7;
 
 /// Standard deviation along the longest axis of a covariance ellipse.
 inline double LargestSigma(const Eigen::Matrix2d& P) {
@@ -26,7 +32,12 @@ struct Candidate {
   double log_density = 0.0;      ///< ln of clutter and births per unit of the measurement's space.
   double birth_existence = 0.0;  ///< Of a track it would start.
   bool is_echo = false;          ///< May be the second echo of a vehicle at half the range.
-  bool may_start = false;
+  bool may_start = false;        ///< May start a track; a box that may not meets none either.
+
+  /// Farther away than any track.
+  static Eigen::Vector2d Nowhere() {
+    return Eigen::Vector2d::Constant(std::numeric_limits<double>::max() / 4.0);
+  }
 };
 
 /// The candidates of one frame, searchable by position: a track is compared with near ones only.
@@ -49,6 +60,18 @@ class Candidates {
     places_.Sort();
   }
 
+  /// Of more than `most` candidates those that come last by key(j) may start nothing.
+  /// @return whether any had to be denied.
+  template <class Key>
+  bool KeepFirst(std::size_t most, Key&& key) {
+    if (all_.size() <= most) return false;
+    order_.resize(all_.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::ranges::sort(order_, {}, key);
+    for (std::size_t k = most; k < order_.size(); ++k) all_[order_[k]].may_start = false;
+    return true;
+  }
+
   /// Calls visit(j) for every candidate whose own reach and `reach_m` together bridge the distance
   /// to `p_O`.
   template <class Visitor>
@@ -61,6 +84,7 @@ class Candidates {
 
  private:
   std::vector<Candidate> all_;
+  std::vector<std::size_t> order_;
   PlaceIndex places_;
   double widest_m_ = 0.0;
 };

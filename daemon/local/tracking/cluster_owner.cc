@@ -10,7 +10,6 @@
 #include "daemon/common/base/angle.h"
 #include "daemon/common/data/outline.h"
 #include "daemon/common/models/extent.h"
-#include "daemon/local/tracking/tracker.h"
 
 namespace v2vouch {
 namespace {
@@ -98,11 +97,11 @@ RadarMeasurement JoinClusters(const RadarMeasurement& a, const RadarMeasurement&
   return out;
 }
 
-// Whether a cluster at p_O can be a part of the tracked vehicle: inside its box and moving with it.
-bool Tracker::Owns(std::size_t track, const RadarLook& look, const RadarMeasurement& z,
-                   const Eigen::Vector2d& p_O) const {
-  const TrackFilter& filter = hidden_[track].filter;
-  const StateVector& x = tracks_[track].state_O.mean;
+bool IsPartOf(TrackTable::ConstRow row, const RadarLook& look, const RadarMeasurement& z,
+              const Eigen::Vector2d& p_O) {
+  const auto& [track, evidence] = row;
+  const TrackFilter& filter = evidence.filter;
+  const StateVector& x = track.state_O.mean;
   const double blur_m =
       std::min(2.0 * (std::sqrt(z.covariance(0, 0)) + z.range_m * std::sqrt(z.covariance(1, 1))),
                kMaxBlur_m);
@@ -110,9 +109,9 @@ bool Tracker::Owns(std::size_t track, const RadarLook& look, const RadarMeasurem
   Eigen::Vector2d turning = Eigen::Vector2d::Zero();
   if (filter.is_vehicle()) {
     const Eigen::Vector2d inside = Eigen::Rotation2D<double>(-x[kYaw]) * from_point;
-    const Extent& extent = tracks_[track].extent;
+    const Extent& extent = track.extent;
     // What stands near a standing vehicle need not belong to it.
-    const double reach = z.is_static ? 0.5 * extent.length_m : ReachAlong(tracks_[track]) + blur_m;
+    const double reach = z.is_static ? 0.5 * extent.length_m : ReachAlong(track) + blur_m;
     const double aside = z.is_static ? kStandingMargin_m : kBoxMargin_m + blur_m;
     if (std::abs(inside.x()) > reach || std::abs(inside.y()) > 0.5 * extent.width_m + aside) {
       return false;
@@ -127,77 +126,105 @@ bool Tracker::Owns(std::size_t track, const RadarLook& look, const RadarMeasurem
   return std::abs(line.dot(velocity) - z.ground_range_rate_mps) <= slack;
 }
 
-// Gives every cluster that was assigned, or that lies in a tracked vehicle's box, an owner.
-void Tracker::AbsorbClusters(const RadarLook& look,
-                             std::span<const RadarMeasurement> measurements) {
-  owner_.assign(measurements.size(), -1);
-  constexpr int kAssigned = 1 << 30;  // Has a track of its own; joins nobody.
-  for (const int j : assigned_) {
-    if (j >= 0) owner_[static_cast<std::size_t>(j)] = kAssigned;
-  }
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (assigned_[i] < 0 && tracks_[i].existence < kOwnerExistence) continue;
-    const double reach_m =
-        ReachAlong(tracks_[i]) + tracks_[i].extent.width_m + kPointRadius_m + kMaxBlur_m;
-    candidates_.ForEachNear(hidden_[i].filter.position_O(), reach_m, [&](std::size_t j) {
-      if (owner_[j] >= 0) return;
-      if (Owns(i, look, measurements[j], candidates_[j].p_O)) owner_[j] = static_cast<int>(i);
-    });
-  }
-}
-
-// A standing vehicle that a camera has named may have been given what lies inside of it, or what
-// stands behind: a clearly stronger standing cluster before that, in its silhouette, is its face.
-void Tracker::TakeFaces(const RadarLook& look, std::span<const RadarMeasurement> measurements) {
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (assigned_[i] < 0 || tracks_[i].camera_hits() == 0 || !hidden_[i].filter.is_vehicle())
-      continue;
-    const RadarMeasurement& given = measurements[static_cast<std::size_t>(assigned_[i])];
-    if (!given.is_static || given.outline_count == 0) continue;
-    const Eigen::Vector2d line = hidden_[i].filter.position_O() - look.origin_O();
-    const double range_m = line.norm();
-    const Eigen::Vector2d u = line / std::max(range_m, 0.1);
-    const Eigen::Vector2d forward(std::cos(tracks_[i].state_O.mean[kYaw]),
-                                  std::sin(tracks_[i].state_O.mean[kYaw]));
-    const double sine = std::abs(forward.x() * u.y() - forward.y() * u.x());
-    const double cosine = std::abs(forward.dot(u));
-    const Extent& extent = tracks_[i].extent;
-    const double deep_m = cosine * extent.length_m + sine * extent.width_m;
-    candidates_.ForEachNear(
-        hidden_[i].filter.position_O(), deep_m + extent.length_m, [&](std::size_t j) {
-          const RadarMeasurement& z = measurements[j];
-          if (owner_[j] >= 0 || !z.is_static || z.outline_count == 0) return;
-          if (z.outline[0].strength_db < given.outline[0].strength_db + kFaceStronger_db) return;
-          const double before_m = given.range_m - z.range_m;
-          if (before_m < 0.0 || before_m > deep_m) return;
-          const Eigen::Vector2d off = candidates_[j].p_O - look.origin_O();
-          if (std::abs(u.x() * off.y() - u.y() * off.x()) > kFaceAside * extent.width_m) return;
-          owner_[j] = static_cast<int>(i);
-        });
-  }
-}
-
-// Whether a box that no track was given shows (a part of) a tracked vehicle after all: half hidden
-// vehicles have edges where the hiding one ends.
-bool Tracker::Covers(std::size_t track, const CameraLook& look, const CameraMeasurement& z,
-                     const Fix& fix) const {
-  if (tracks_[track].existence < kOwnerExistence) return false;
-  const StateVector& x = tracks_[track].state_O.mean;
+bool IsPartOf(const LocalTrack& track, const CameraLook& look, const CameraMeasurement& z,
+              const Fix& fix) {
+  if (track.existence < kOwnerExistence) return false;
+  const StateVector& x = track.state_O.mean;
   const Eigen::Vector2d line = x.head<2>() - look.origin_O();
   const double range_m = line.norm();
   if (range_m < 1.0) return true;
   const double bearing =
       WrapAngle(std::atan2(line.y(), line.x()) - look.ego.X_OB.yaw_rad() - look.camera.yaw_rad);
-  const double half =
-      0.5 * std::hypot(tracks_[track].extent.length_m, tracks_[track].extent.width_m) / range_m;
+  const double half = 0.5 * std::hypot(track.extent.length_m, track.extent.width_m) / range_m;
   const double overlap =
       std::min(z.azimuth_left_rad, bearing + half) - std::max(z.azimuth_right_rad, bearing - half);
   if (overlap < 0.5 * (z.azimuth_left_rad - z.azimuth_right_rad)) return false;
   const double fix_range_m = (fix.p_O - look.origin_O()).norm();
   const Eigen::Vector2d u = line / range_m;
   const double range_sigma = std::sqrt(u.dot(fix.covariance * u));
-  return std::abs(fix_range_m - range_m) <
-         3.0 * range_sigma + 0.5 * tracks_[track].extent.length_m + 1.0;
+  return std::abs(fix_range_m - range_m) < 3.0 * range_sigma + 0.5 * track.extent.length_m + 1.0;
+}
+
+void ClusterOwners::Find(const RadarLook& look, std::span<const RadarMeasurement> measurements,
+                         const TrackTable& table, const Association& association) {
+  FindByPlace(look, measurements, table, association);
+  FindFaces(look, measurements, table, association);
+  Join(look, measurements, table, association);
+}
+
+// Every cluster that was assigned, or that lies in a tracked vehicle's box.
+void ClusterOwners::FindByPlace(const RadarLook& look,
+                                std::span<const RadarMeasurement> measurements,
+                                const TrackTable& table, const Association& association) {
+  const Candidates& candidates = association.candidates();
+  owner_.assign(measurements.size(), kNobody);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (const auto given = association.GivenTo(i)) owner_[*given] = kAssigned;
+  }
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const auto [track, evidence] = table[i];
+    if (!association.GivenTo(i) && track.existence < kOwnerExistence) continue;
+    const double reach_m = ReachAlong(track) + track.extent.width_m + kPointRadius_m + kMaxBlur_m;
+    candidates.ForEachNear(evidence.filter.position_O(), reach_m, [&](std::size_t j) {
+      if (IsOwned(j)) return;
+      if (IsPartOf(table[i], look, measurements[j], candidates[j].p_O)) {
+        owner_[j] = static_cast<int>(i);
+      }
+    });
+  }
+}
+
+// A standing vehicle that a camera has named may have been given what lies inside of it, or what
+// stands behind: a clearly stronger standing cluster before that, in its silhouette, is its face.
+void ClusterOwners::FindFaces(const RadarLook& look, std::span<const RadarMeasurement> measurements,
+                              const TrackTable& table, const Association& association) {
+  const Candidates& candidates = association.candidates();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const auto [track, evidence] = table[i];
+    const auto assigned = association.GivenTo(i);
+    if (!assigned || track.camera_hits() == 0 || !evidence.filter.is_vehicle()) continue;
+    const RadarMeasurement& given = measurements[*assigned];
+    if (!given.is_static || given.outline_count == 0) continue;
+    const Eigen::Vector2d line = evidence.filter.position_O() - look.origin_O();
+    const Eigen::Vector2d u = line / std::max(line.norm(), 0.1);
+    const double yaw_rad = track.state_O.mean[kYaw];
+    const Eigen::Vector2d forward(std::cos(yaw_rad), std::sin(yaw_rad));
+    const double sine = std::abs(forward.x() * u.y() - forward.y() * u.x());
+    const double cosine = std::abs(forward.dot(u));
+    const Extent& extent = track.extent;
+    const double deep_m = cosine * extent.length_m + sine * extent.width_m;
+    const double reach_m = deep_m + extent.length_m;
+    candidates.ForEachNear(evidence.filter.position_O(), reach_m, [&](std::size_t j) {
+      const RadarMeasurement& z = measurements[j];
+      if (IsOwned(j) || !z.is_static || z.outline_count == 0) return;
+      if (z.outline[0].strength_db < given.outline[0].strength_db + kFaceStronger_db) return;
+      const double before_m = given.range_m - z.range_m;
+      if (before_m < 0.0 || before_m > deep_m) return;
+      const Eigen::Vector2d off = candidates[j].p_O - look.origin_O();
+      if (std::abs(u.x() * off.y() - u.y() * off.x()) > kFaceAside * extent.width_m) return;
+      owner_[j] = static_cast<int>(i);
+    });
+  }
+}
+
+// What each track was given, with the clusters that belong to it.
+void ClusterOwners::Join(const RadarLook& look, std::span<const RadarMeasurement> measurements,
+                         const TrackTable& table, const Association& association) {
+  const Eigen::Vector2d v_A_B = AntennaVelocity_B(look.ego, look.radar);
+  const Eigen::Matrix2d R_BO = look.ego.X_OB.rotation().transpose();
+  const Eigen::Rotation2Dd R_RB(-look.radar.yaw_rad);
+  joined_.resize(table.size());
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (const auto given = association.GivenTo(i)) joined_[i] = measurements[*given];
+  }
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    if (owner_[j] < 0 || owner_[j] == kAssigned) continue;
+    const auto owner = static_cast<std::size_t>(owner_[j]);
+    if (!association.GivenTo(owner)) continue;
+    const Eigen::Vector2d velocity_O = table[owner].evidence.filter.velocity_O();
+    const Eigen::Vector2d v_TA_R = R_RB * (R_BO * velocity_O - v_A_B);
+    joined_[owner] = JoinClusters(joined_[owner], measurements[j], v_TA_R);
+  }
 }
 
 }  // namespace v2vouch

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "daemon/common/base/angle.h"
+#include "daemon/common/models/extent.h"
 #include "daemon/common/models/measurement_model.h"
 
 namespace v2vouch {
@@ -17,8 +18,36 @@ constexpr double kSameWay_rad = 0.35;  // 20 degrees: a lane that bends goes on.
 constexpr double kBeside_m = 5.0;
 // Roads are straight for so far.
 constexpr double kAlong_m = 40.0;
+// What is faster than this drives along its lane; what is shorter than this walks or cycles.
+constexpr double kDrives_mps = 3.0;
+constexpr double kWalks_m = 2.0;
 
 }  // namespace
+
+void RoadDirections::Learn(const EgoState& ego, const TrackTable& table) {
+  if (ego.speed_mps > kDrives_mps) Note(ego.X_OB.origin().vector(), ego.X_OB.yaw_rad());
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const auto [track, evidence] = table[i];
+    if (!track.is_confirmed || !evidence.filter.has_driven()) continue;
+    if (evidence.last_hit != table.now()) continue;
+    if (ClassExtent(track.object_class).length_m < kWalks_m) continue;
+    const Eigen::Vector2d velocity = evidence.filter.velocity_O();
+    if (velocity.norm() < kDrives_mps) continue;
+    Note(evidence.filter.position_O(), std::atan2(velocity.y(), velocity.x()));
+  }
+}
+
+void RoadDirections::FaceAlong(TrackTable& table) const {
+  if (table.settings().point_targets) return;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const auto [track, evidence] = table[i];
+    TrackFilter& filter = evidence.filter;
+    if (!filter.is_vehicle() || filter.has_driven()) continue;
+    if (evidence.last_hit != table.now()) continue;
+    const double axis_rad = track.state_O.mean[kYaw];
+    if (const auto yaw = DirectionAt(filter.position_O(), axis_rad)) filter.FaceTowards(*yaw);
+  }
+}
 
 void RoadDirections::Note(const Eigen::Vector2d& p_O, double yaw_rad) {
   for (std::size_t k = 0; k < count_; ++k) {

@@ -6,6 +6,9 @@
 #include <cstddef>
 #include <optional>
 
+#include "daemon/common/data/ego.h"
+#include "daemon/local/tracking/track_table.h"
+
 namespace v2vouch {
 
 /// Which way vehicles drive where, learnt from those that were seen driving and from the ego
@@ -17,6 +20,12 @@ namespace v2vouch {
 class RoadDirections {
  public:
   static constexpr std::size_t kMost = 160;
+
+  /// After a frame: the ways of the ego and of the listed vehicles that were measured in motion.
+  void Learn(const EgoState& ego, const TrackTable& table);
+  /// Turns the front of each vehicle that was measured now, and was never seen driving, to where
+  /// the way beside it leads.
+  void FaceAlong(TrackTable& table) const;
 
   /// Something drives along `yaw_rad` at `p_O`. A point near one with much the same direction adds
   /// nothing.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "daemon/local/tracking/standing_returns.h"
+
 #include <algorithm>
 #include <array>
 #include <bitset>
 #include <cmath>
 
-#include "daemon/local/tracking/tracker.h"
+#include "daemon/local/tracking/radar_candidates.h"
 
 namespace v2vouch {
 namespace {
@@ -36,98 +38,125 @@ double StrengthAtOneMetre(const RadarMeasurement& z) {
 
 }  // namespace
 
-// What no track was given of this radar's scan, in place of what was kept of its oldest one.
-void Tracker::KeepReturns(const RadarLook& look, int radar,
-                          std::span<const RadarMeasurement> measurements) {
-  std::erase_if(recent_, [radar](RecentReturn& at) {
-    return at.radar == radar && ++at.scans_ago >= kKeptScans;
-  });
-  newcomers_.clear();
+void StandingReturns::Keep(const RadarLook& look, int radar,
+                           std::span<const RadarMeasurement> measurements,
+                           const Candidates& candidates, const ClusterOwners& owners) {
+  std::erase_if(recent_,
+                [radar](Return& at) { return at.radar == radar && ++at.scans_ago >= kKeptScans; });
+  kept_.clear();
   for (std::size_t j = 0; j < measurements.size(); ++j) {
-    if (measurements[j].is_static && owner_[j] >= 0) continue;
-    if (!candidates_[j].p_O.allFinite() || candidates_[j].reach_m == 0.0) continue;
-    newcomers_.push_back(static_cast<int>(j));
+    if (measurements[j].is_static && owners.IsOwned(j)) continue;
+    if (!candidates[j].p_O.allFinite() || candidates[j].reach_m == 0.0) continue;
+    kept_.push_back(j);
   }
-  KeepNearest(measurements, kMostReturns, newcomers_);
-  for (const int kept : newcomers_) {
-    const auto j = static_cast<std::size_t>(kept);
-    const bool is_moving = !measurements[j].is_static;
-    const Fix fix = settings_.point_targets ? FixOf(look, measurements[j])
-                                            : ReflectionFixOf(look, measurements[j]);
-    recent_.push_back(
-        {fix, radar, 0, measurements[j].returns, is_moving, StrengthAtOneMetre(measurements[j])});
+  KeepNearest(measurements, kMostReturns, kept_);
+  for (const std::size_t j : kept_) {
+    const RadarMeasurement& z = measurements[j];
+    const Fix fix = point_targets_ ? FixOf(look, z) : ReflectionFixOf(look, z);
+    recent_.push_back({fix, radar, 0, z.returns, !z.is_static, StrengthAtOneMetre(z)});
   }
 }
 
-// The place of the standing returns that a track's boxes agree on, if there is one such place.
-Tracker::Place Tracker::FindPlace(const Glances& glances) {
-  Place place;
-  const auto count = static_cast<double>(glances.size());
-  const double most = count + kRangeSigmas * std::sqrt(2.0 * count);
+void StandingReturns::ForgetMoving() {
+  std::erase_if(recent_, [](const Return& at) { return at.is_moving; });
+}
 
-  in_sight_.clear();
-  for (const RecentReturn& at : recent_) {
-    const auto misfit = glances.Misfit(at.fix.p_O);
-    if (misfit) in_sight_.push_back({&at, *misfit, glances.RangeTo(at.fix.p_O)});
+void StandingReturns::LearnRange(const CameraLook& look, const CameraMeasurement& z,
+                                 TrackEvidence& evidence) {
+  evidence.glances.Add(look, z);
+  const auto count = static_cast<double>(evidence.glances.size());
+  const double most_misfit = count + kRangeSigmas * std::sqrt(2.0 * count);
+  const bool is_moving = CollectInSight(evidence.glances, most_misfit);
+  if (is_moving) {
+    if (++evidence.moving_there >= kMovingPictures) evidence.is_ended = true;
+    return;
   }
+  evidence.moving_there = 0;
+  if (evidence.glances.size() < kLeastGlances) return;
+  if (const auto standing = FindStanding(most_misfit)) {
+    evidence.filter.TakeStanding(*standing);
+    evidence.has_range = true;
+  }
+}
+
+bool StandingReturns::CollectInSight(const Glances& glances, double most_misfit) {
+  in_sight_.clear();
+  bool is_moving = false;
+  for (const Return& at : recent_) {
+    const auto misfit = glances.Misfit(at.fix.p_O);
+    if (!misfit) continue;
+    in_sight_.push_back({&at, *misfit, glances.RangeTo(at.fix.p_O)});
+    is_moving = is_moving || (at.is_moving && at.scans_ago == 0 && !(*misfit > most_misfit));
+  }
+  return is_moving;
+}
+
+// The place of the standing returns that a track's boxes agree on, if there is one such place.
+std::optional<Fix> StandingReturns::FindStanding(double most_misfit) const {
   // What a radar sees best there: the face that a vehicle turns to it answers by far the strongest.
   std::array<double, kMostSensorsOfAKind> strongest_db;
   strongest_db.fill(-1e9);
   for (const InSight& seen : in_sight_) {
-    if (seen.at->is_moving || seen.misfit > most) continue;
+    if (seen.at->is_moving || seen.misfit > most_misfit) continue;
     double& db = strongest_db[static_cast<std::size_t>(seen.at->radar)];
     db = std::max(db, seen.at->strength_db);
   }
-  double best_score = 0.0;
-  double second_score = 0.0;
-  double best_m = -1.0;
-  double second_m = -1.0;
+  Choice choice;
   for (const InSight& seen : in_sight_) {
-    const RecentReturn& at = *seen.at;
-    if (seen.misfit > most) continue;
-    if (at.is_moving) {
-      if (at.scans_ago == 0) place.is_moving = true;
-      continue;
-    }
-    const double range_m = seen.range_m;
-    // A post gives one return to a scan, a vehicle several.
-    int returns = 0;
-    std::bitset<std::size_t{kMostSensorsOfAKind} * kKeptScans> scans;
-    for (const InSight& other : in_sight_) {
-      const double behind_m = other.range_m - range_m;
-      if (other.at->is_moving || behind_m < 0.0 || behind_m > kDepth_m) continue;
-      returns += other.at->returns;
-      scans.set(static_cast<std::size_t>(other.at->radar) * kKeptScans +
-                static_cast<std::size_t>(other.at->scans_ago));
-    }
-    const double per_scan = returns / static_cast<double>(std::max<std::size_t>(scans.count(), 1));
-    const double plenty = std::clamp((per_scan - kPostReturns) / kMoreReturns, 0.0, 1.0);
-    const double weaker_db =
-        std::min(strongest_db[static_cast<std::size_t>(at.radar)] - at.strength_db, kMostWeaker_db);
-    const double score =
-        kLone + plenty * (kSeveral - kLone) - 0.5 * seen.misfit - kPerDecibel * weaker_db;
-    if (best_m < 0.0 || score > best_score) {
-      // One place shows itself once for each of its returns.
-      if (best_m >= 0.0 && std::abs(best_m - range_m) > kDepth_m) {
-        second_m = best_m;
-        second_score = best_score;
-      }
-      best_m = range_m;
-      best_score = score;
-    } else if (std::abs(best_m - range_m) > kDepth_m && (second_m < 0.0 || score > second_score)) {
-      second_m = range_m;
-      second_score = score;
-    }
+    if (seen.at->is_moving || seen.misfit > most_misfit) continue;
+    const double strongest = strongest_db[static_cast<std::size_t>(seen.at->radar)];
+    choice.Offer(ScoreOf(seen, strongest), seen.range_m);
   }
-  if (place.is_moving || glances.size() < kLeastGlances || best_m < 0.0) return place;
-  if (second_m >= 0.0 && best_score - second_score < kMargin) return place;
+  if (!choice.IsClear()) return std::nullopt;
+  return MeanBehind(choice.best_m);
+}
 
+// Logarithm of how likely a vehicle's near face is there. A post gives one return to a scan, a
+// vehicle several.
+double StandingReturns::ScoreOf(const InSight& seen, double strongest_db) const {
+  int returns = 0;
+  std::bitset<std::size_t{kMostSensorsOfAKind} * kKeptScans> scans;
+  for (const InSight& other : in_sight_) {
+    const double behind_m = other.range_m - seen.range_m;
+    if (other.at->is_moving || behind_m < 0.0 || behind_m > kDepth_m) continue;
+    returns += other.at->returns;
+    scans.set(static_cast<std::size_t>(other.at->radar) * kKeptScans +
+              static_cast<std::size_t>(other.at->scans_ago));
+  }
+  const double per_scan = returns / static_cast<double>(std::max<std::size_t>(scans.count(), 1));
+  const double plenty = std::clamp((per_scan - kPostReturns) / kMoreReturns, 0.0, 1.0);
+  const double weaker_db = std::min(strongest_db - seen.at->strength_db, kMostWeaker_db);
+  return kLone + plenty * (kSeveral - kLone) - 0.5 * seen.misfit - kPerDecibel * weaker_db;
+}
+
+// One place shows itself once for each of its returns.
+void StandingReturns::Choice::Offer(double score, double range_m) {
+  const bool is_elsewhere = std::abs(best_m - range_m) > kDepth_m;
+  if (best_m < 0.0 || score > best_score) {
+    if (best_m >= 0.0 && is_elsewhere) {
+      second_m = best_m;
+      second_score = best_score;
+    }
+    best_m = range_m;
+    best_score = score;
+  } else if (is_elsewhere && (second_m < 0.0 || score > second_score)) {
+    second_m = range_m;
+    second_score = score;
+  }
+}
+
+bool StandingReturns::Choice::IsClear() const {
+  return best_m >= 0.0 && !(second_m >= 0.0 && best_score - second_score < kMargin);
+}
+
+// The standing returns within a vehicle's depth, weighted by the number of reflections.
+Fix StandingReturns::MeanBehind(double range_m) const {
   Fix fix;
   fix.covariance.setZero();
   double sum = 0.0;
   for (const InSight& seen : in_sight_) {
-    const RecentReturn& at = *seen.at;
-    const double behind_m = seen.range_m - best_m;
+    const Return& at = *seen.at;
+    const double behind_m = seen.range_m - range_m;
     if (at.is_moving || behind_m < 0.0 || behind_m > kDepth_m) continue;
     fix.p_O += at.returns * at.fix.p_O;
     fix.covariance += at.returns * at.fix.covariance;
@@ -135,22 +164,7 @@ Tracker::Place Tracker::FindPlace(const Glances& glances) {
   }
   fix.p_O /= sum;
   fix.covariance /= sum;
-  place.standing = fix;
-  return place;
-}
-
-// One more box of a track whose range is only guessed.
-void Tracker::LearnRange(std::size_t track, const CameraLook& look, const CameraMeasurement& z) {
-  Hidden& hidden = hidden_[track];
-  hidden.glances.Add(look, z);
-  const Place place = FindPlace(hidden.glances);
-  hidden.moving_there = place.is_moving ? hidden.moving_there + 1 : 0;
-  if (place.standing) {
-    hidden.filter.TakeStanding(*place.standing);
-    hidden.has_range = true;
-  } else if (hidden.moving_there >= kMovingPictures) {
-    hidden.is_dead = true;
-  }
+  return fix;
 }
 
 }  // namespace v2vouch

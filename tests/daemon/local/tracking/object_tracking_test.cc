@@ -160,7 +160,7 @@ TEST(ObjectTracking, AFloodOfBoxesStartsABoundedNumberAndSaysSo) {
   }
   stand.Advance();
   stand.Boxes(flood);
-  EXPECT_LE(stand.tracker.tracks().size(), Tracker::kMostNewcomers);
+  EXPECT_LE(stand.tracker.tracks().size(), TrackTable::kMostNewcomers);
   ASSERT_FALSE(stand.tracker.failures().empty());
   EXPECT_EQ(stand.tracker.failures()[0], Reason::kTrackTableFull);
 }
