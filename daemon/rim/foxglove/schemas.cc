@@ -22,9 +22,15 @@ std::string Object(const std::string& title, Fields fields) {
 
 std::string List(const std::string& items) { return R"({"type":"array","items":)" + items + "}"; }
 
-std::map<std::string, std::string, std::less<>> MakeSchemas() {
-  const std::string number = R"({"type":"number"})", whole = R"({"type":"integer"})",
-                    text = R"({"type":"string"})", yes_no = R"({"type":"boolean"})";
+using Schemas = std::map<std::string, std::string, std::less<>>;
+
+/// What messages are made of.
+struct Types {
+  const std::string number = R"({"type":"number"})";
+  const std::string whole = R"({"type":"integer"})";
+  const std::string text = R"({"type":"string"})";
+  const std::string yes_no = R"({"type":"boolean"})";
+  const std::string bytes = R"({"type":"string","contentEncoding":"base64"})";
   const std::string time = Object("time", {{"sec", whole}, {"nsec", whole}});
   const std::string duration = Object("duration", {{"sec", whole}, {"nsec", whole}});
   const std::string vector =
@@ -37,94 +43,123 @@ std::map<std::string, std::string, std::less<>> MakeSchemas() {
       Object("foxglove.Pose", {{"position", vector}, {"orientation", rotation}});
   const std::string colour =
       Object("foxglove.Color", {{"r", number}, {"g", number}, {"b", number}, {"a", number}});
-  const std::string none = R"({"type":"object"})";
+};
 
-  const std::string deletion =
-      Object("foxglove.SceneEntityDeletion", {{"timestamp", time}, {"type", whole}, {"id", text}});
-  const std::string arrow = Object("foxglove.ArrowPrimitive", {{"pose", pose},
-                                                               {"shaft_length", number},
-                                                               {"shaft_diameter", number},
-                                                               {"head_length", number},
-                                                               {"head_diameter", number},
-                                                               {"color", colour}});
+std::string EntityOf(const Types& t) {
+  const std::string arrow = Object("foxglove.ArrowPrimitive", {{"pose", t.pose},
+                                                               {"shaft_length", t.number},
+                                                               {"shaft_diameter", t.number},
+                                                               {"head_length", t.number},
+                                                               {"head_diameter", t.number},
+                                                               {"color", t.colour}});
   const std::string cube =
-      Object("foxglove.CubePrimitive", {{"pose", pose}, {"size", vector}, {"color", colour}});
-  const std::string line = Object("foxglove.LinePrimitive", {{"type", whole},
-                                                             {"pose", pose},
-                                                             {"thickness", number},
-                                                             {"scale_invariant", yes_no},
-                                                             {"points", List(point)},
-                                                             {"color", colour},
-                                                             {"colors", List(colour)},
-                                                             {"indices", List(whole)}});
-  const std::string label = Object("foxglove.TextPrimitive", {{"pose", pose},
-                                                              {"billboard", yes_no},
-                                                              {"font_size", number},
-                                                              {"scale_invariant", yes_no},
-                                                              {"color", colour},
-                                                              {"text", text}});
-  const std::string pair = Object("foxglove.KeyValuePair", {{"key", text}, {"value", text}});
-  const std::string entity = Object("foxglove.SceneEntity", {{"timestamp", time},
-                                                             {"frame_id", text},
-                                                             {"id", text},
-                                                             {"lifetime", duration},
-                                                             {"frame_locked", yes_no},
-                                                             {"metadata", List(pair)},
-                                                             {"arrows", List(arrow)},
-                                                             {"cubes", List(cube)},
-                                                             {"spheres", List(none)},
-                                                             {"cylinders", List(none)},
-                                                             {"lines", List(line)},
-                                                             {"triangles", List(none)},
-                                                             {"texts", List(label)},
-                                                             {"models", List(none)}});
-  std::map<std::string, std::string, std::less<>> schemas;
-  const auto add = [&](const std::string& name, Fields fields) {
-    schemas[name] = Object(name, fields);
-  };
-  add("foxglove.SceneUpdate", {{"deletions", List(deletion)}, {"entities", List(entity)}});
-  add("foxglove.FrameTransform", {{"timestamp", time},
-                                  {"parent_frame_id", text},
-                                  {"child_frame_id", text},
-                                  {"translation", vector},
-                                  {"rotation", rotation}});
-  add("foxglove.LocationFix", {{"timestamp", time},
-                               {"frame_id", text},
-                               {"latitude", number},
-                               {"longitude", number},
-                               {"altitude", number},
-                               {"position_covariance", List(number)},
-                               {"position_covariance_type", whole}});
-  add("foxglove.Log", {{"timestamp", time},
-                       {"level", whole},
-                       {"message", text},
-                       {"name", text},
-                       {"file", text},
-                       {"line", whole}});
-  add("foxglove.CompressedImage", {{"timestamp", time},
-                                   {"frame_id", text},
-                                   {"data", R"({"type":"string","contentEncoding":"base64"})"},
-                                   {"format", text}});
-  add("foxglove.RawImage", {{"timestamp", time},
-                            {"frame_id", text},
-                            {"width", whole},
-                            {"height", whole},
-                            {"encoding", text},
-                            {"step", whole},
-                            {"data", R"({"type":"string","contentEncoding":"base64"})"}});
-  add("v2vouch.FlatTracks", {{"timestamp", time},
-                             {"count", whole},
-                             {"nearest_m", number},
-                             {"id", List(number)},
-                             {"x_m", List(number)},
-                             {"y_m", List(number)},
-                             {"speed_mps", List(number)},
-                             {"yaw_rad", List(number)},
-                             {"existence", List(number)},
-                             {"sigma_m", List(number)},
-                             {"own_age_s", List(number)},
-                             {"budget_s", List(number)},
-                             {"trust_state", List(number)}});
+      Object("foxglove.CubePrimitive", {{"pose", t.pose}, {"size", t.vector}, {"color", t.colour}});
+  const std::string line = Object("foxglove.LinePrimitive", {{"type", t.whole},
+                                                             {"pose", t.pose},
+                                                             {"thickness", t.number},
+                                                             {"scale_invariant", t.yes_no},
+                                                             {"points", List(t.point)},
+                                                             {"color", t.colour},
+                                                             {"colors", List(t.colour)},
+                                                             {"indices", List(t.whole)}});
+  const std::string label = Object("foxglove.TextPrimitive", {{"pose", t.pose},
+                                                              {"billboard", t.yes_no},
+                                                              {"font_size", t.number},
+                                                              {"scale_invariant", t.yes_no},
+                                                              {"color", t.colour},
+                                                              {"text", t.text}});
+  const std::string none = R"({"type":"object"})";
+  const std::string pair = Object("foxglove.KeyValuePair", {{"key", t.text}, {"value", t.text}});
+  return Object("foxglove.SceneEntity", {{"timestamp", t.time},
+                                         {"frame_id", t.text},
+                                         {"id", t.text},
+                                         {"lifetime", t.duration},
+                                         {"frame_locked", t.yes_no},
+                                         {"metadata", List(pair)},
+                                         {"arrows", List(arrow)},
+                                         {"cubes", List(cube)},
+                                         {"spheres", List(none)},
+                                         {"cylinders", List(none)},
+                                         {"lines", List(line)},
+                                         {"triangles", List(none)},
+                                         {"texts", List(label)},
+                                         {"models", List(none)}});
+}
+
+void Add(const std::string& name, Fields fields, Schemas& schemas) {
+  schemas[name] = Object(name, fields);
+}
+
+void AddScene(const Types& t, Schemas& schemas) {
+  const std::string deletion = Object("foxglove.SceneEntityDeletion",
+                                      {{"timestamp", t.time}, {"type", t.whole}, {"id", t.text}});
+  Add("foxglove.SceneUpdate", {{"deletions", List(deletion)}, {"entities", List(EntityOf(t))}},
+      schemas);
+  Add("foxglove.FrameTransform",
+      {{"timestamp", t.time},
+       {"parent_frame_id", t.text},
+       {"child_frame_id", t.text},
+       {"translation", t.vector},
+       {"rotation", t.rotation}},
+      schemas);
+}
+
+void AddFixLogAndPictures(const Types& t, Schemas& schemas) {
+  Add("foxglove.LocationFix",
+      {{"timestamp", t.time},
+       {"frame_id", t.text},
+       {"latitude", t.number},
+       {"longitude", t.number},
+       {"altitude", t.number},
+       {"position_covariance", List(t.number)},
+       {"position_covariance_type", t.whole}},
+      schemas);
+  Add("foxglove.Log",
+      {{"timestamp", t.time},
+       {"level", t.whole},
+       {"message", t.text},
+       {"name", t.text},
+       {"file", t.text},
+       {"line", t.whole}},
+      schemas);
+  Add("foxglove.CompressedImage",
+      {{"timestamp", t.time}, {"frame_id", t.text}, {"data", t.bytes}, {"format", t.text}},
+      schemas);
+  Add("foxglove.RawImage",
+      {{"timestamp", t.time},
+       {"frame_id", t.text},
+       {"width", t.whole},
+       {"height", t.whole},
+       {"encoding", t.text},
+       {"step", t.whole},
+       {"data", t.bytes}},
+      schemas);
+}
+
+void AddFlatTracks(const Types& t, Schemas& schemas) {
+  Add("v2vouch.FlatTracks",
+      {{"timestamp", t.time},
+       {"count", t.whole},
+       {"nearest_m", t.number},
+       {"id", List(t.number)},
+       {"x_m", List(t.number)},
+       {"y_m", List(t.number)},
+       {"speed_mps", List(t.number)},
+       {"yaw_rad", List(t.number)},
+       {"existence", List(t.number)},
+       {"sigma_m", List(t.number)},
+       {"own_age_s", List(t.number)},
+       {"budget_s", List(t.number)},
+       {"trust_state", List(t.number)}},
+      schemas);
+}
+
+Schemas MakeSchemas() {
+  const Types types;
+  Schemas schemas;
+  AddScene(types, schemas);
+  AddFixLogAndPictures(types, schemas);
+  AddFlatTracks(types, schemas);
   return schemas;
 }
 
