@@ -38,6 +38,74 @@ bool ByAzimuthThenRange(const RadarMeasurement& a, const RadarMeasurement& b) {
          std::tie(b.azimuth_rad, b.range_m, b.range_rate_mps, b.object_id);
 }
 
+// Of a cluster's returns on its outline, in R.
+struct OutlineMean {
+  Eigen::Vector2d p_R = Eigen::Vector2d::Zero();
+  double ground_rate_mps = 0.0;
+  double count = 0.0;
+};
+
+// Marks those returns as well.
+OutlineMean MeanOfOutline(std::span<const int> members, std::span<const OutlineReturn> outline,
+                          std::span<Reflection> reflections) {
+  OutlineMean mean;
+  for (const int member : members) {
+    Reflection& r = reflections[static_cast<std::size_t>(member)];
+    r.is_outline = std::ranges::any_of(outline, [&](const OutlineReturn& o) {
+      return o.range_m == r.range_m && o.azimuth_rad == r.azimuth_rad;
+    });
+    if (!r.is_outline) continue;
+    mean.p_R += Eigen::Vector2d(r.x_m, r.y_m);
+    mean.ground_rate_mps += r.ground_rate_mps;
+    mean.count += 1.0;
+  }
+  mean.p_R /= mean.count;
+  mean.ground_rate_mps /= mean.count;
+  return mean;
+}
+
+// Range and azimuth that all the returns of a cluster fill, about its mean azimuth.
+void MeasureEdges(std::span<const int> members, std::span<const Reflection> reflections,
+                  RadarMeasurement& m) {
+  double nearest_m = reflections[static_cast<std::size_t>(members[0])].range_m;
+  double farthest_m = nearest_m;
+  double right_rad = 0.0;
+  double left_rad = 0.0;
+  double middle_rad = 0.0;
+  for (const int member : members) {
+    const Reflection& r = reflections[static_cast<std::size_t>(member)];
+    nearest_m = std::min(nearest_m, r.range_m);
+    farthest_m = std::max(farthest_m, r.range_m);
+    const double aside_rad = AngleDifference(r.azimuth_rad, m.azimuth_rad);
+    right_rad = std::min(right_rad, aside_rad);
+    left_rad = std::max(left_rad, aside_rad);
+    middle_rad += aside_rad;
+  }
+  m.near_range_m = nearest_m;
+  m.radial_extent_m = farthest_m - nearest_m;
+  m.middle_azimuth_rad = m.azimuth_rad + middle_rad / static_cast<double>(members.size());
+  m.azimuth_min_rad = m.azimuth_rad + right_rad;
+  m.azimuth_max_rad = m.azimuth_rad + left_rad;
+}
+
+// Sums of the squared deviations of the outline's returns in range, azimuth and ground range rate.
+Eigen::Array3d SquaresOfOutline(std::span<const int> members,
+                                std::span<const Reflection> reflections, const OutlineMean& mean,
+                                const RadarMeasurement& m) {
+  const Eigen::Vector2d ray = Direction(m.azimuth_rad);
+  Eigen::Array3d squares = Eigen::Array3d::Zero();
+  for (const int member : members) {
+    const Reflection& r = reflections[static_cast<std::size_t>(member)];
+    if (!r.is_outline) continue;
+    const Eigen::Vector2d off = Eigen::Vector2d(r.x_m, r.y_m) - mean.p_R;
+    const double along_m = off.dot(ray);
+    const double across_rad = (ray.x() * off.y() - ray.y() * off.x()) / m.range_m;
+    const double rate_mps = r.ground_rate_mps - mean.ground_rate_mps;
+    squares += Eigen::Array3d(along_m, across_rad, rate_mps).square();
+  }
+  return squares;
+}
+
 }  // namespace
 
 AntennaMotion MotionOfAntenna(const RadarConfig& radar, const EgoState& ego) {
@@ -199,68 +267,26 @@ void RadarPreprocessor::Emit(std::span<const int> members, const RadarConfig& ra
     outline_.push_back({r.range_m, r.azimuth_rad, r.strength_db});
   }
   if (!m.is_object) outline_.resize(KeepOutline(outline_));
-  Eigen::Vector2d mean(0.0, 0.0);
-  double ground_rate_mps = 0.0;
-  double count = 0.0;
-  for (const int member : members) {
-    Reflection& r = reflections_[static_cast<std::size_t>(member)];
-    r.is_outline = std::ranges::any_of(outline_, [&](const OutlineReturn& o) {
-      return o.range_m == r.range_m && o.azimuth_rad == r.azimuth_rad;
-    });
-    if (!r.is_outline) continue;
-    mean += Eigen::Vector2d(r.x_m, r.y_m);
-    ground_rate_mps += r.ground_rate_mps;
-    count += 1.0;
-  }
-  mean /= count;
-  ground_rate_mps /= count;
-
+  const OutlineMean mean = MeanOfOutline(members, outline_, reflections_);
   m.returns = static_cast<int>(members.size());
   // Reflections all round a very close sensor may average to its very place.
-  m.range_m = std::max(mean.norm(), 0.01);
-  m.azimuth_rad = std::atan2(mean.y(), mean.x());
-  const Eigen::Vector2d ray = Direction(m.azimuth_rad);
-  m.ground_range_rate_mps = ground_rate_mps;
-  m.range_rate_mps = ground_rate_mps - antenna.velocity_R.dot(ray);
+  m.range_m = std::max(mean.p_R.norm(), 0.01);
+  m.azimuth_rad = std::atan2(mean.p_R.y(), mean.p_R.x());
+  m.ground_range_rate_mps = mean.ground_rate_mps;
+  m.range_rate_mps = mean.ground_rate_mps - antenna.velocity_R.dot(Direction(m.azimuth_rad));
   m.is_static = at(members[0]).is_standing;
   m.object_id = members.size() == 1 ? at(members[0]).object_id : -1;
-
-  double nearest_m = at(members[0]).range_m;
-  double farthest_m = nearest_m;
-  double right_rad = 0.0;
-  double left_rad = 0.0;
-  double middle_rad = 0.0;
-  Eigen::Array3d squares = Eigen::Array3d::Zero();
-  for (const int member : members) {
-    const Reflection& r = at(member);
-    nearest_m = std::min(nearest_m, r.range_m);
-    farthest_m = std::max(farthest_m, r.range_m);
-    const double aside_rad = AngleDifference(r.azimuth_rad, m.azimuth_rad);
-    right_rad = std::min(right_rad, aside_rad);
-    left_rad = std::max(left_rad, aside_rad);
-    middle_rad += aside_rad;
-    if (!r.is_outline) continue;
-    const Eigen::Vector2d off = Eigen::Vector2d(r.x_m, r.y_m) - mean;
-    const double along_m = off.dot(ray);
-    const double across_rad = (ray.x() * off.y() - ray.y() * off.x()) / m.range_m;
-    const double rate_mps = r.ground_rate_mps - ground_rate_mps;
-    squares += Eigen::Array3d(along_m, across_rad, rate_mps).square();
-  }
-  m.near_range_m = nearest_m;
-  m.radial_extent_m = farthest_m - nearest_m;
-  m.middle_azimuth_rad = m.azimuth_rad + middle_rad / static_cast<double>(members.size());
+  MeasureEdges(members, reflections_, m);
   if (!m.is_object) {
     m.outline_count = std::min(outline_.size(), RadarMeasurement::kMostOutline);
     std::copy_n(outline_.begin(), m.outline_count, m.outline.begin());
   }
-  m.azimuth_min_rad = m.azimuth_rad + right_rad;
-  m.azimuth_max_rad = m.azimuth_rad + left_rad;
-
   const Eigen::Array3d noise =
       Eigen::Array3d(radar.range_sigma_m, radar.azimuth_sigma_rad, radar.range_rate_sigma_mps)
           .square();
-  const Eigen::Array3d spread = squares / std::max(1.0, count - 1.0);
-  m.covariance = Eigen::Matrix3d((noise.max(spread) / count).matrix().asDiagonal());
+  const Eigen::Array3d squares = SquaresOfOutline(members, reflections_, mean, m);
+  const Eigen::Array3d spread = squares / std::max(1.0, mean.count - 1.0);
+  m.covariance = Eigen::Matrix3d((noise.max(spread) / mean.count).matrix().asDiagonal());
   measurements.push_back(m);
 }
 
