@@ -26,8 +26,8 @@ class ListingRules {
  public:
   explicit ListingRules(const TrackerConfig& config) : config_(config) {}
 
-  /// Whether a track that was not measured now is waited for. Hidden ones are for as long as they
-  /// were known, up to hidden_hold_s; what lies in view ends by misses.
+  /// Whether a track without a measurement is waited for: out of sight for 0.3 s and three times as
+  /// long as it was known (at most hidden_hold_s; cameras alone: 0.3 s), and worth listing by then.
   [[nodiscard]] bool MayCoast(const LocalTrack& track, const TrackEvidence& evidence,
                               Timestamp now) const;
 

@@ -123,7 +123,6 @@ class Tracker {
   void StartFromRadar(const RadarLook& look, SensorKey sensor,
                       std::span<const RadarMeasurement> measurements);
 
-  void AddCameraBoxes(const CameraLook& look, std::span<const CameraMeasurement> measurements);
   void CompareCameraBoxes(const CameraLook& look, std::span<const CameraMeasurement> measurements);
   void TakeCameraBox(const CameraLook& look, SensorKey sensor, std::size_t i,
                      const CameraMeasurement& raw);
@@ -149,8 +148,6 @@ class Tracker {
   void StartWhole(const WholeFrame& frame, std::span<const Measurement> measurements);
   template <class Measurement>
   void NoteWhole(const WholeFrame& frame, std::uint64_t id, std::size_t j, const Measurement& z);
-  void AddBoxes(const BoxSensor& sensor, std::span<const BoxMeasurement> boxes);
-  void AddPoses(const PoseSensor& sensor, std::span<const PoseMeasurement> poses);
 
   TrackerConfig config_;
   std::shared_ptr<const VehicleConfig> vehicle_;

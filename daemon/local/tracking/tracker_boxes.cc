@@ -11,23 +11,22 @@ namespace {
 // Beyond this a score changes nothing any more.
 constexpr double kMostLogOdds = 20.0;
 
-}  // namespace
-
-void Tracker::AddBoxes(const BoxSensor& sensor, std::span<const BoxMeasurement> boxes) {
-  const double sigmas = association_.GateSigmas(WholeTraits<BoxMeasurement>::kGateRows);
-  Candidates& candidates = association_.candidates();
+// The score tells a vehicle from clutter before any track is asked.
+void AddCandidates(const BoxSensor& sensor, std::span<const BoxMeasurement> boxes,
+                   double birth_per_m2_s, TrackTable& table, Association& association) {
+  const double sigmas = association.GateSigmas(WholeTraits<BoxMeasurement>::kGateRows);
+  Candidates& candidates = association.candidates();
   for (const BoxMeasurement& z : boxes) {
     Candidate candidate;
     if (const auto fault = FaultOf(z)) {
-      table_.AddFault(*fault);
+      table.AddFault(*fault);
       candidate.p_O = Candidate::Nowhere();
       candidates.Add(candidate);
       continue;
     }
-    // The score tells a vehicle from clutter before any track is asked.
     const double clutter =
         sensor.clutter_per_m2 * std::exp(-std::clamp(z.log_odds, -kMostLogOdds, kMostLogOdds));
-    candidate.birth_existence = BirthExistence(config_.birth_per_m2_s * sensor.period_s, clutter);
+    candidate.birth_existence = BirthExistence(birth_per_m2_s * sensor.period_s, clutter);
     candidate.log_density = std::log(clutter / (1.0 - candidate.birth_existence));
     candidate.p_O << z.x_m, z.y_m;
     candidate.reach_m = sigmas * LargestSigma(z.position_covariance);
@@ -37,12 +36,14 @@ void Tracker::AddBoxes(const BoxSensor& sensor, std::span<const BoxMeasurement> 
   candidates.Sort();
 }
 
+}  // namespace
+
 void Tracker::UpdateBoxes(const BoxSensor& sensor, std::span<const BoxMeasurement> boxes,
                           const DetectabilityOf& detectability) {
   const WholeFrame frame{.sensor = {SensorKind::kObjects, 0}};
   boxes = boxes.first(std::min(boxes.size(), TrackTable::kMostDetections));
   Begin(frame.sensor, detectability);
-  AddBoxes(sensor, boxes);
+  AddCandidates(sensor, boxes, config_.birth_per_m2_s, table_, association_);
   UpdateWhole(frame, boxes);
 }
 
@@ -58,7 +59,8 @@ void Tracker::UpdateObjects(int source, const EgoState& ego, std::span<const Box
                                                 config.min_range_m * config.min_range_m);
   const double clutter = std::max(config.clutter_per_frame, table_.CrowdOf(boxes.size()));
   Begin(frame.sensor, detectability);
-  AddBoxes({config.period_s, clutter / std::max(area_m2, 1.0)}, boxes);
+  AddCandidates({config.period_s, clutter / std::max(area_m2, 1.0)}, boxes, config_.birth_per_m2_s,
+                table_, association_);
   UpdateWhole(frame, boxes);
 }
 

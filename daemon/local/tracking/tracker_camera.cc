@@ -28,6 +28,31 @@ double HalfViewOf(const CameraConfig& camera) {
   return std::atan2(0.5 * camera.image_width_px, camera.fx_px);
 }
 
+// The boxes of one picture. One that is not finite meets nothing and starts nothing.
+void AddCandidates(const CameraLook& look, std::span<const CameraMeasurement> measurements,
+                   const TrackerConfig& config, TrackTable& table, Candidates& candidates) {
+  const CameraConfig& camera = look.camera;
+  const double reach_m = config.camera_birth_range_m;
+  const double births =
+      config.birth_per_m2_s * camera.period_s * HalfViewOf(camera) * reach_m * reach_m;
+  const double clutter =
+      std::max(camera.clutter_per_image, table.CrowdOf(std::min(measurements.size(), kMostBoxes)));
+  const double birth_existence = BirthExistence(births, clutter);
+  for (const CameraMeasurement& z : measurements) {
+    Candidate candidate;
+    candidate.birth_existence = birth_existence;
+    candidate.log_density = std::log(clutter / Cells(z, look) / (1.0 - birth_existence));
+    candidate.may_start = IsFinite(z);
+    candidates.Add(candidate);
+  }
+  // No picture has more vehicles: the surest boxes count.
+  const bool is_crowded = candidates.KeepFirst(kMostBoxes, [&](std::size_t j) {
+    const double score = measurements[j].score;
+    return std::pair(score > 0.0 ? -score : 0.0, j);
+  });
+  if (is_crowded) table.AddFault(Reason::kTrackTableFull);
+}
+
 }  // namespace
 
 double Cells(const CameraMeasurement& z, const CameraLook& look) {
@@ -44,7 +69,7 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
   const CameraLook look{ego, vehicle_->cameras[static_cast<std::size_t>(camera)]};
   const SensorKey sensor{SensorKind::kCamera, camera};
   Begin(sensor, detectability);
-  AddCameraBoxes(look, measurements);
+  AddCandidates(look, measurements, config_, table_, association_.candidates());
   CompareCameraBoxes(look, measurements);
   association_.Solve(measurements.size(), Proof::kRepeated, table_);
   for (std::size_t i = 0; i < table_.size(); ++i) {
@@ -62,31 +87,6 @@ void Tracker::UpdateCamera(int camera, const EgoState& ego,
   StartFromCamera(look, sensor, measurements);
   roads_.Learn(ego, table_);
   Conclude();
-}
-
-void Tracker::AddCameraBoxes(const CameraLook& look,
-                             std::span<const CameraMeasurement> measurements) {
-  const CameraConfig& camera = look.camera;
-  const double reach_m = config_.camera_birth_range_m;
-  const double births =
-      config_.birth_per_m2_s * camera.period_s * HalfViewOf(camera) * reach_m * reach_m;
-  const double clutter =
-      std::max(camera.clutter_per_image, table_.CrowdOf(std::min(measurements.size(), kMostBoxes)));
-  const double birth_existence = BirthExistence(births, clutter);
-  Candidates& candidates = association_.candidates();
-  for (const CameraMeasurement& z : measurements) {
-    Candidate candidate;
-    candidate.birth_existence = birth_existence;
-    candidate.log_density = std::log(clutter / Cells(z, look) / (1.0 - birth_existence));
-    candidate.may_start = IsFinite(z);
-    candidates.Add(candidate);
-  }
-  // No picture has more vehicles: the surest boxes count.
-  const bool is_crowded = candidates.KeepFirst(kMostBoxes, [&](std::size_t j) {
-    const double score = measurements[j].score;
-    return std::pair(score > 0.0 ? -score : 0.0, j);
-  });
-  if (is_crowded) table_.AddFault(Reason::kTrackTableFull);
 }
 
 void Tracker::CompareCameraBoxes(const CameraLook& look,

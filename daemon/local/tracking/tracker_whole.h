@@ -22,6 +22,10 @@ struct WholeTraits<PoseMeasurement> {
   /// Whether the track is compared as a point: a reflection somewhere on a vehicle.
   static bool IsPoint(const TrackFilter& filter) { return !filter.knows_direction(); }
   static TrackFilter Start(const PoseMeasurement& z) { return TrackFilter::FromPose(z); }
+  static PoseMeasurement Given(const FrameDetectability&, std::size_t, const TrackTable&,
+                               const PoseMeasurement& z) {
+    return z;
+  }
   static void NoteClass(const PoseMeasurement&, std::size_t, TrackTable&) {}
 };
 
@@ -30,6 +34,11 @@ struct WholeTraits<BoxMeasurement> {
   static constexpr std::size_t kGateRows = 2;
   static bool IsPoint(const TrackFilter& filter) { return !filter.is_vehicle(); }
   static TrackFilter Start(const BoxMeasurement& z) { return TrackFilter::FromBox(z); }
+  /// With what visibility knows, which a bench has no say in.
+  static BoxMeasurement Given(const FrameDetectability& expected, std::size_t i,
+                              const TrackTable& table, const BoxMeasurement& z) {
+    return expected.Given(i, table, z);
+  }
   static void NoteClass(const BoxMeasurement& z, std::size_t i, TrackTable& table) {
     table.NoteClass(i, z.object_class, z.score);
   }
@@ -73,10 +82,9 @@ void Tracker::TakeWhole(const WholeFrame& frame, std::size_t i, std::size_t j,
                         const Measurement& raw) {
   const auto [track, evidence] = table_[i];
   association_.candidates()[j].may_start = false;
-  Measurement z = raw;
-  if constexpr (std::is_same_v<Measurement, BoxMeasurement>) {
-    if (!frame.is_bench) z = association_.expected().Given(i, table_, raw);
-  }
+  const Measurement z =
+      frame.is_bench ? raw
+                     : WholeTraits<Measurement>::Given(association_.expected(), i, table_, raw);
   if (frame.origin_O) evidence.filter.SeenFrom(*frame.origin_O);
   WholeTraits<Measurement>::NoteClass(z, i, table_);
   if (!evidence.filter.Update(z)) return table_.Fail(i);
