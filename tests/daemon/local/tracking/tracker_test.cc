@@ -341,26 +341,6 @@ TEST(Tracker, ACopyIsACheckpoint) {
   }
 }
 
-// Ninety-six sensors, as many as the configuration allows, each with the most detections.
-TEST(Tracker, IdsTellTimeSensorAndDetectionApart) {
-  const Timestamp time = FromMicros(1'700'000'000'000'001);
-  std::uint64_t last = 0;
-  for (const SensorKind kind : kAllSensorKinds) {
-    for (int sensor = 0; sensor < kMostSensorsOfAKind; ++sensor) {
-      for (std::size_t i = 0; i < TrackTable::kMostDetections; ++i) {
-        const std::uint64_t id = TrackTable::PackId(time, {kind, sensor}, i);
-        ASSERT_GT(id, last);
-        last = id;
-      }
-    }
-  }
-  EXPECT_GT(TrackTable::PackId(time + FromSeconds(0.001), {}, 0), last);
-  const Timestamp far_off = FromMicros(7'258'118'400'000'000);  // 2200, the last year we take.
-  EXPECT_LT(
-      TrackTable::PackId(far_off, {SensorKind::kObjects, 31}, TrackTable::kMostDetections - 1),
-      std::uint64_t{1} << 63);
-}
-
 // 32 radars, 32 cameras and 32 sources of objects that all see another car at one instant.
 TEST(Tracker, AsManySensorsAsCanBeConfiguredGiveDistinctTracksAndAreAskedByTheirKind) {
   VehicleConfig vehicle;
