@@ -277,6 +277,7 @@ void Perception::CollectNotices(std::vector<Notice>& notices) const {
   state_->clock.CollectNotices(notices);
   state_->timeline.local().ego_reading().CollectNotices(notices);
   state_->timeline.priority().CollectNotices(notices);
+  state_->intake.CollectNotices(notices);
 }
 
 bool Perception::IsAlive(SensorKey sensor) const {

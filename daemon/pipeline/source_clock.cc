@@ -13,6 +13,10 @@ constexpr int kEgoWeight = 3;
 constexpr int kWeight = 2;
 // A leap of a source's own stamps is no time that has passed.
 constexpr double kLongestStride_s = 0.5;
+// What old stamps count as time that has passed: sensors behind one gateway may deliver seconds of
+// backlog at once while nobody else speaks. Not nothing, or a step back in which most sources end
+// at the same moment would never be taken.
+constexpr double kShareOfOldWay = 0.1;
 // So many rulings of one kind in a row are a condition, not an accident.
 constexpr int kRunThatTells = 3;
 // Later than that against the agreed time, ten times in a row, is worth telling: a network's delay
@@ -45,15 +49,16 @@ SourceClock::Source& SourceClock::Find(const NoticeSubject& subject, bool is_gue
 
 // Its claim, and how far everybody has come by then.
 void SourceClock::Hear(Source& source, Timestamp stamp) {
+  source.is_behind = agreed_ && stamp < *agreed_ - FromSeconds(config_.replay_buffer_s);
   if (!source.others_travelled.empty()) {
     source.equal_stamps = stamp == source.claim ? source.equal_stamps + 1 : 0;
-    source.travelled_s += std::clamp(ToSeconds(stamp - source.claim), 0.0, kLongestStride_s);
+    const double way_s = std::clamp(ToSeconds(stamp - source.claim), 0.0, kLongestStride_s);
+    source.travelled_s += source.is_behind ? kShareOfOldWay * way_s : way_s;
   }
   const bool is_back = source.has_accepted &&
                        stamp < source.newest_accepted - FromSeconds(kStepBack_s) &&
                        (source.run_back == 0 || stamp > source.claim);
   source.run_back = is_back ? source.run_back + 1 : 0;
-  source.is_behind = agreed_ && stamp < *agreed_ - FromSeconds(config_.replay_buffer_s);
   source.claim = stamp;
   source.others_travelled.resize(sources_.size());
   for (std::size_t i = 0; i < sources_.size(); ++i) {

@@ -22,7 +22,8 @@ namespace v2vouch {
 /// motion, which nothing works without, weighs 1.5 times a radar or camera and so breaks ties. A
 /// source has stopped speaking when two others (the other one, where there is but one) have moved
 /// on by `kSilent_s` of their own time since its last message; so the backlog of one source makes
-/// no other source count as silent.
+/// no other source count as silent. Stamps older than the replay buffer count a tenth there, so
+/// that neither does the backlog of several.
 ///
 /// T follows the median while that moves by no more than the replay buffer, never backwards.
 /// A larger step, or any step back of more than kStepBack_s, needs more than half of the weight of
@@ -80,7 +81,7 @@ class SourceClock {
     NoticeSubject subject;
     bool is_guest = false;
     Timestamp claim{};
-    double travelled_s = 0.0;                // By its own stamps, without its leaps.
+    double travelled_s = 0.0;                // By its own stamps, without its leaps; old ones less.
     std::vector<double> others_travelled{};  // Theirs, when it spoke last.
     Timestamp newest_accepted{};
     bool has_accepted = false;

@@ -59,3 +59,24 @@ if "${obu}" --interface nobody0 >"${work}/none.txt" 2>&1; then
   exit 1
 fi
 grep -q "interface nobody0: " "${work}/none.txt"
+
+# An interface that goes away (a dongle pulled, a driver restarted) and comes back.
+log="${work}/replugged.txt"
+"${obu}" --config "${work}/interface.yaml" >"${log}" 2>&1 &
+pid=$!
+wait_for() { for _ in $(seq 200); do grep -q "$1" "${log}" && return; sleep 0.05; done; cat "${log}"; exit 1; }
+wait_for event=listening
+ip link del host0
+wait_for "event=interface_gone interface=host0"
+ip link add unit0 type veth peer name host0
+ip link set dev host0 address 02:00:00:00:00:02
+ip addr add 192.168.88.10/24 dev host0
+ip link set unit0 up
+ip link set host0 up
+wait_for "event=interface_back interface=host0"
+tcpreplay --intf1=unit0 --pps=50 "${data}/udp_all_framings.pcap" >"${work}/tcpreplay.txt" 2>&1
+sleep 1
+kill -TERM "${pid}"
+wait "${pid}" || { echo "replugged: v2vouch-obu failed"; cat "${log}"; exit 1; }
+grep -q "event=stopped.* published=12 " "${log}" || { echo "replugged: 12 expected"; cat "${log}"; exit 1; }
+echo "replugged: 12 of 12 published"

@@ -7,6 +7,7 @@ namespace v2vouch::obu {
 namespace {
 
 constexpr int kReceiveBufferBytes = 4 << 20;
+constexpr std::int64_t kRetry_us = 1000000;
 
 std::int64_t Now() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
@@ -35,24 +36,38 @@ std::unique_ptr<InputDoor> InputDoor::Open(const InputConfig& input, std::size_t
                                            error);
     return door->socket_ ? std::move(door) : nullptr;
   }
-  const bool has_filter = !input.filter.empty();
-  door->capture_ =
-      LiveCapture::Open(input.interface, has_filter ? input.filter : DefaultFilter(input),
-                        kReceiveBufferBytes, error);
+  return door->OpenCapture(error) ? std::move(door) : nullptr;
+}
+
+bool InputDoor::OpenCapture(std::string& error) {
+  const bool has_filter = !input_.filter.empty();
+  capture_ = LiveCapture::Open(input_.interface, has_filter ? input_.filter : DefaultFilter(input_),
+                               kReceiveBufferBytes, error);
   // An 802.11 interface has no Ethernet types to filter by.
-  if (!door->capture_ && !has_filter) {
+  if (!capture_ && !has_filter) {
     std::string other;
-    door->capture_ = LiveCapture::Open(input.interface, "", kReceiveBufferBytes, other);
+    capture_ = LiveCapture::Open(input_.interface, "", kReceiveBufferBytes, other);
   }
-  return door->capture_ ? std::move(door) : nullptr;
+  return capture_ != nullptr;
 }
 
 bool InputDoor::Receive(const std::function<void(const Arrival&)>& sink) {
-  if (capture_) {
-    return capture_->Receive([&](const Captured& packet) {
+  if (!input_.interface.empty()) {
+    if (!capture_) {
+      const std::int64_t now = Now();
+      std::string error;
+      if (now < retry_utime_ && retry_utime_ - now <= kRetry_us) return false;
+      retry_utime_ = now + kRetry_us;
+      if (!OpenCapture(error)) return false;
+    }
+    const int count = capture_->Receive([&](const Captured& packet) {
       sink({packet.bytes, input_.interface, index_, packet.utime != 0 ? packet.utime : Now(),
             packet.is_cut, packet.link_type});
-    }) >= 0;
+    });
+    if (count >= 0) return true;
+    earlier_drops_ += capture_->drops();
+    capture_.reset();
+    return false;
   }
   socket_->Receive([&](const net::Datagram& datagram) {
     const std::string source = datagram.source.Text();
@@ -63,17 +78,19 @@ bool InputDoor::Receive(const std::function<void(const Arrival&)>& sink) {
 }
 
 int InputDoor::descriptor() const {
-  return capture_ ? capture_->descriptor() : socket_->descriptor();
+  if (socket_) return socket_->descriptor();
+  return capture_ ? capture_->descriptor() : -1;
 }
 std::int64_t InputDoor::kernel_drops() const {
-  return capture_ ? capture_->drops() : socket_->kernel_drops();
+  if (socket_) return socket_->kernel_drops();
+  return earlier_drops_ + (capture_ ? capture_->drops() : 0);
 }
 std::int64_t InputDoor::buffer_bytes() const {
-  return capture_ ? kReceiveBufferBytes : socket_->buffer_bytes();
+  return socket_ ? socket_->buffer_bytes() : kReceiveBufferBytes;
 }
 
 std::string InputDoor::text() const {
-  if (capture_) return "interface=" + input_.interface;
+  if (!socket_) return "interface=" + input_.interface;
   return "address=" + input_.bind + " port=" + std::to_string(socket_->port());
 }
 

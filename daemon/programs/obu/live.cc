@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
-#include <thread>
 
 #include "daemon/obu/gateway/gateway.h"
 #include "daemon/programs/obu/input_door.h"
@@ -49,6 +48,7 @@ class Loop {
           (input.allow.empty() ? " allow=anybody"
                                : " allow=" + std::to_string(input.allow.size())));
       waits_.push_back({door->descriptor(), POLLIN, 0});
+      is_open_.push_back(true);
       doors_.push_back(std::move(door));
     }
     std::string error;
@@ -65,17 +65,18 @@ class Loop {
       const auto wait_ms = static_cast<int>(
           std::clamp<std::int64_t>((due - before + 999) / 1000, 0, kLongestWait_ms));
       poll(waits_.data(), waits_.size(), wait_ms);
-      bool has_lost_door = false;
-      for (const auto& door : doors_) {
-        const bool is_open = door->Receive([&](const Arrival& arrival) {
+      for (std::size_t i = 0; i < doors_.size(); ++i) {
+        const bool is_open = doors_[i]->Receive([&](const Arrival& arrival) {
           gateway_.OnDatagram(arrival, out_);
           const auto id = gateway_.TakeUnitSent();
           if (id && own_) own_->OnUnitSent(*id, Now());
         });
-        has_lost_door = has_lost_door || !is_open;
+        waits_[i].fd = doors_[i]->descriptor();
+        if (is_open != is_open_[i]) {
+          Log((is_open ? "event=interface_back " : "event=interface_gone ") + doors_[i]->text());
+        }
+        is_open_[i] = is_open;
       }
-      // poll() would come back at once, for ever; the interface may come back.
-      if (has_lost_door) std::this_thread::sleep_for(std::chrono::milliseconds(kLongestWait_ms));
       const std::int64_t now = Now();
       gateway_.Flush(now, out_);
       PublishAll();
@@ -163,7 +164,8 @@ class Loop {
   GatewayConfig config_;
   Gateway gateway_;
   std::vector<std::unique_ptr<InputDoor>> doors_;
-  std::vector<pollfd> waits_;
+  std::vector<pollfd> waits_;  // Of each door; poll() passes over -1.
+  std::vector<bool> is_open_;  // Of each door, when it was last asked.
   std::unique_ptr<LcmBus> bus_;
   std::unique_ptr<OwnOutput> own_;
   std::vector<bsm_t> out_;
@@ -176,19 +178,6 @@ class Loop {
 };
 
 }  // namespace
-
-void CheckGatewayConfig(const GatewayConfig& config, std::vector<std::string>& problems) {
-  if (config.inputs.empty()) problems.push_back("inputs: names no input");
-  for (const InputConfig& input : config.inputs) {
-    if (input.framing != "auto" && !LayerOfName(input.framing)) {
-      problems.push_back("inputs.framing = " + input.framing + ": is no framing; see --help");
-    }
-  }
-  if (const std::string problem = CheckLcmUrl(config.lcm_url); !problem.empty()) {
-    problems.push_back("lcm_url: " + problem);
-  }
-  CheckOwnBsm(config.own_bsm, problems);
-}
 
 int RunGateway(const GatewayConfig& config, TrustAnchors anchors) {
   HandleStopSignals();

@@ -6,9 +6,6 @@
 
 namespace v2vouch::obu {
 
-/// What is wrong beyond single values: framings, addresses.
-void CheckGatewayConfig(const GatewayConfig& config, std::vector<std::string>& problems);
-
 /// Receives, publishes BSMs and, once a second, OBU_STATUS, until a stop is asked for.
 /// @return exit code: 1 where a socket cannot be opened.
 int RunGateway(const GatewayConfig& config, TrustAnchors anchors);

@@ -4,6 +4,7 @@
 
 #include "daemon/obu/framing/datagram.h"
 #include "daemon/programs/obu/decode.h"
+#include "daemon/programs/obu/gateway_check.h"
 #include "daemon/programs/obu/live.h"
 #include "daemon/rim/config/yaml_reader.h"
 #include "daemon/rim/io/lcm_url.h"
@@ -56,20 +57,24 @@ int main(int argc, char** argv) {
   int port = 0;
   CLI::App app("Hands what on-board units receive to the daemon; prints what is in a capture.");
   app.footer(kExamples);
-  app.add_option("--decode", options.path, "Capture (pcap, pcapng), hex text or raw datagram");
-  app.add_flag("--json", options.as_json, "One JSON object a line");
-  app.add_flag("--join", options.join_lines, "Hex text: all lines are one datagram");
+  CLI::Option* const decode =
+      app.add_option("--decode", options.path, "Capture (pcap, pcapng), hex text or raw datagram");
+  app.add_flag("--json", options.as_json, "One JSON object a line")->needs(decode);
+  app.add_flag("--join", options.join_lines, "Hex text: all lines are one datagram")->needs(decode);
   app.add_option("--framing", framing, "Take datagrams for this, whatever they look like")
       ->check(v2vouch::OneOf(FramingNames()))
       ->capture_default_str();
   app.add_option("--config", config_path, "Ports, addresses and certificates of the gateway");
   app.add_option("--port", port, "Listen on this UDP port (default: 5398)")
-      ->check(CLI::Range(1, 65535));
+      ->check(CLI::Range(1, 65535))
+      ->excludes(decode);
   app.add_option("--interface", interface,
-                 "Capture from this network interface instead of a socket (libpcap; as root)");
+                 "Capture from this network interface instead of a socket (libpcap; as root)")
+      ->excludes(decode);
   app.add_option("--roots", roots, "Folder of certificates that are trusted");
   app.add_option("--issuers", issuers, "Folder of certificates that the trusted ones vouch for");
-  app.add_option("--send-to", send_to, "Send this car's BSMs to the unit: ADDRESS:PORT");
+  app.add_option("--send-to", send_to, "Send this car's BSMs to the unit: ADDRESS:PORT")
+      ->excludes(decode);
   app.add_option("--send-form", own_form, "rsu_text (RSU 4.1, port 1516), frame (bare), dot2")
       ->check(v2vouch::OneOf({"rsu_text", "frame", "dot2"}));
   app.add_flag("--unit-sends-none", unit_sends_none,

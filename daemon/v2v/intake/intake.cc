@@ -90,6 +90,7 @@ Result<Claim> BsmIntake::Accept(const Bsm& bsm, const EgoPlace& ego) {
     return *problem;
   }
   const double age = ClaimedAge(bsm, config_);
+  if (bsm.sec_mark_ms || bsm.generation) utc_.OnMessage(bsm.sender, bsm.stamp, age);
   if (age > config_.max_age_s) return Reason::kBsmStale;
   if (age < -config_.max_future_s) return Reason::kBsmFuture;
   if (config_.own_id != 0 && bsm.sender == config_.own_id) return Reason::kBsmOwnEcho;
@@ -184,6 +185,17 @@ void BsmIntake::Pin(SenderId sender, bool is_pinned) {
 const SenderTrack* BsmIntake::Find(SenderId sender) const {
   const std::size_t index = IndexOf(sender);
   return Holds(index, sender) ? &senders_[index] : nullptr;
+}
+
+void BsmIntake::CollectNotices(std::vector<Notice>& notices) const {
+  const auto behind_s = utc_.difference_s();
+  if (!behind_s) return;
+  const NoticeKind kind = *behind_s > 0.0 ? NoticeKind::kClockBehind : NoticeKind::kClockAhead;
+  const NoticeSubject radio{NoticeSubject::Kind::kV2v, 0};
+  const bool is_told = std::ranges::any_of(notices, [&](const Notice& notice) {
+    return notice.kind == kind && notice.subject == radio;  // Of the time of reception.
+  });
+  if (!is_told) notices.push_back({kind, radio, std::abs(*behind_s)});
 }
 
 std::size_t BsmIntake::IndexOf(SenderId sender) const {

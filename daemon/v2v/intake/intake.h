@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "daemon/common/base/notice.h"
 #include "daemon/common/base/result.h"
 #include "daemon/common/base/visit.h"
 #include "daemon/common/data/claim.h"
@@ -17,6 +18,7 @@
 #include "daemon/v2v/intake/message_check_config.h"
 #include "daemon/v2v/intake/repeat_memory.h"
 #include "daemon/v2v/intake/sender_checks.h"
+#include "daemon/v2v/intake/utc_watch.h"
 
 namespace v2vouch {
 
@@ -137,6 +139,9 @@ class BsmIntake {
   [[nodiscard]] std::span<const SenderTrack> senders() const { return senders_; }
   [[nodiscard]] const SenderTrack* Find(SenderId sender) const;
 
+  /// Appends what the senders' time says of this car's clock (UtcWatch).
+  void CollectNotices(std::vector<Notice>& notices) const;
+
  private:
   // Kept beside senders_, same order: what the checks need, small enough to search fast.
   struct Account {
@@ -164,6 +169,7 @@ class BsmIntake {
   std::vector<std::uint32_t> free_slots_;
   RepeatMemory repeats_;
   KnockMemory knocks_;
+  UtcWatch utc_;
   double total_tokens_ = 0.0;
   double new_tokens_ = 0.0;
   std::optional<Timestamp> refilled_;

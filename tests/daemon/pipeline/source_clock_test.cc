@@ -313,6 +313,47 @@ TEST(SourceClock, ABacklogCostsTheMessagesOfItsOwner) {
   }
 }
 
+// Sensors behind one gateway (three radars of one bus, a perception computer's boxes and pictures)
+// are held up together. While their backlog arrives nobody else speaks.
+TEST(SourceClock, ABacklogOfSeveralSourcesAtOnceIsNoStepBack) {
+  const std::vector<Sender> car = Car();
+  const std::vector<std::vector<std::size_t>> gateways = {{1, 2},    {1, 4}, {4, 5},
+                                                          {1, 2, 3}, {2, 5}, {0, 4}};
+  for (const auto& held_up : gateways) {
+    for (const double held_s : {0.5, 1.25, 3.0, 10.0}) {
+      for (const bool is_in_turn : {false, true}) {  // One source after the other, or by time.
+        std::vector<std::tuple<double, double, std::size_t, double>> arrivals;
+        for (std::size_t i = 0; i < car.size(); ++i) {
+          const bool is_held_up = std::ranges::find(held_up, i) != held_up.end();
+          for (double t = car[i].phase_s; t < 30.0; t += car[i].period_s) {
+            const bool is_old = is_held_up && t > 15.0 - held_s && t < 15.0;
+            const double order = is_old && is_in_turn ? static_cast<double>(i) : t;
+            arrivals.emplace_back(is_old ? 15.0 : t, order, i, t);
+          }
+        }
+        std::ranges::sort(arrivals);
+        SourceClock clock{TimelineConfig{}};
+        int restarts = 0;
+        int others_refused = 0;
+        int refused_later = 0;
+        for (const auto& [now_s, order, i, t] : arrivals) {
+          const auto judged = clock.Judge(car[i].subject, At(t));
+          restarts += judged.is_restart ? 1 : 0;
+          const bool is_refused = judged.ruling != Ruling::kAccept;
+          const bool is_held_up = std::ranges::find(held_up, i) != held_up.end();
+          if (is_refused && !is_held_up) ++others_refused;
+          if (is_refused && is_held_up && now_s > 16.0) ++refused_later;
+        }
+        const std::string which = std::to_string(held_up.front()) + " and others, " +
+                                  std::to_string(held_s) + " s" + (is_in_turn ? ", in turn" : "");
+        EXPECT_EQ(restarts, 0) << which;
+        EXPECT_EQ(others_refused, 0) << which;
+        EXPECT_EQ(refused_later, 0) << which;
+      }
+    }
+  }
+}
+
 TEST(SourceClock, PicturesThroughAJitteringNetworkAreNoStepBack) {
   std::vector<Sender> car = Car();
   // Reordered arrivals: the delay swings by 0.25 s from picture to picture.

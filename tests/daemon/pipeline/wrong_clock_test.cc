@@ -197,6 +197,35 @@ TEST(WrongClock, OfAllSteppingTogetherStartsAgainWithinHalfASecond) {
 }
 
 // The scans of half a second to ten seconds at once, after a hung bridge.
+// Nothing of the car's own disagrees, so only the senders' time can show it.
+TEST(WrongClock, OfTheWholeCarAgainstUtcIsTold) {
+  const SyntheticDrive drive = Traffic(14.0);
+  for (const double off_s : {-0.5, 0.0, 0.6, 2.5}) {
+    PerceptionConfig config;
+    config.vehicle = drive.vehicle;
+    Perception perception(config, std::make_unique<NullBiasEstimator>());
+    Outputs outputs;
+    for (Input input : MakeInputs(drive)) {
+      if (auto* bsm = std::get_if<Bsm>(&input)) {
+        if (!bsm->sec_mark_ms && !bsm->generation) bsm->generation = bsm->stamp;
+      }
+      Header(input).stamp += FromSeconds(off_s);
+      perception.Step(input, outputs);
+    }
+    std::vector<Notice> notices;
+    perception.CollectNotices(notices);
+    const NoticeSubject radio{NoticeSubject::Kind::kV2v, 0};
+    std::erase_if(notices, [&](const Notice& notice) { return notice.subject != radio; });
+    if (off_s == 0.0) {
+      EXPECT_TRUE(notices.empty());
+      continue;
+    }
+    ASSERT_EQ(notices.size(), 1u) << off_s;
+    EXPECT_EQ(notices[0].kind, off_s > 0.0 ? NoticeKind::kClockBehind : NoticeKind::kClockAhead);
+    EXPECT_NEAR(notices[0].value, std::abs(off_s), 0.2);
+  }
+}
+
 TEST(WrongClock, ABacklogOfOneSensorCostsNoTrackAndNoTrust) {
   const SyntheticDrive drive = Traffic();
   for (const int wrong : {1, 2, 4}) {

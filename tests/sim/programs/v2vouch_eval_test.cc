@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <v2vouch/track_list_t.hpp>
 #include <v2vouch/truth_list_t.hpp>
@@ -95,6 +96,15 @@ TEST_F(Eval, WhatIsMissingIsNamedWithWhatToDo) {
   EXPECT_EQ(nothing.code, 1);
   EXPECT_THAT(nothing.output, HasSubstr("no track lists"));
   EXPECT_THAT(Judge(Log({.lists = 0}), "--spoof").output, HasSubstr("holds no"));
+}
+
+TEST_F(Eval, ALogThatIsCutOffIsJudgedAndTold) {
+  const std::string log = Log({});
+  EXPECT_THAT(Judge(log).output, Not(HasSubstr("damaged")));
+  std::filesystem::resize_file(log, std::filesystem::file_size(log) - 10);  // Within an event.
+  const Finished cut = Judge(log);
+  EXPECT_EQ(cut.code, 0);
+  EXPECT_THAT(cut.output, HasSubstr("run.lcm: 1 damaged stretches"));
 }
 
 TEST_F(Eval, StepsOfTheTruthsTimeAreNamedAndTakeNoMemory) {

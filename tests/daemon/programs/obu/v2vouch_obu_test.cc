@@ -17,6 +17,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 Finished Obu(const std::string& arguments) { return Called(V2VOUCH_OBU, arguments); }
 
@@ -59,6 +60,36 @@ TEST(V2vouchObu, UsageIsToldWithExitCode2) {
   EXPECT_THAT(Obu("--decode x --framing wsmpp").output, HasSubstr("did you mean wsmp?"));
   EXPECT_EQ(Obu("--decode /dev/null --roots /nowhere").code, 2);
   EXPECT_EQ(Obu("--decode /nowhere.pcap").code, 1);
+}
+
+// Each would have run, heard or told nobody, and said nothing.
+TEST(V2vouchObu, WhatWouldHearOrTellNobodyIsRefusedAtStart) {
+  const auto called = [](const std::string& arguments) {
+    return Execute("timeout 10 " V2VOUCH_OBU " " + arguments + " 2>&1");
+  };
+  const Finished done = called("--config " + Written("mute.yaml", R"(
+inputs:
+  - {port: 6001, allow: [192.168.88.400, 192.168.88.0/24, obu.local, 192.168.88, "", "FE80:0::1"]}
+  - {port: 6001, allow: [192.168.88.40, "fe80::1"]}
+  - {bind: eth0}
+bsm_channel: ""
+status_channel: EGO_GNSS
+own_bsm: {motion_channel: A B}
+)"));
+  EXPECT_EQ(done.code, 2);
+  for (const char* address : {"192.168.88.400", "192.168.88.0/24", "obu.local", "192.168.88", ""}) {
+    EXPECT_THAT(done.output, HasSubstr(std::string("inputs[0].allow: ") + address +
+                                       ": must be an address of a unit"));
+  }
+  EXPECT_THAT(done.output, HasSubstr("FE80:0::1: write it as fe80::1"));
+  EXPECT_THAT(done.output, Not(HasSubstr("inputs[1].allow")));
+  EXPECT_THAT(done.output, HasSubstr("inputs[1]: 0.0.0.0 port 6001: stands here twice"));
+  EXPECT_THAT(done.output, HasSubstr("inputs[2].bind = eth0"));
+  EXPECT_THAT(done.output, HasSubstr("bsm_channel: channel \"\""));
+  EXPECT_THAT(done.output, HasSubstr("channel EGO_GNSS: is that of status_channel already"));
+  EXPECT_THAT(done.output, HasSubstr("own_bsm.motion_channel: channel \"A B\""));
+  EXPECT_EQ(called("--json").code, 2);
+  EXPECT_EQ(called("--decode /dev/null --port 5398").code, 2);
 }
 
 TEST(V2vouchObu, PublishedPayloadsAsHexLinesGiveTheirValuesInJson) {
