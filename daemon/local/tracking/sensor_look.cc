@@ -9,6 +9,12 @@ namespace {
 // The middle of a box's bottom edge is this far from the middle of the vehicle's near face.
 constexpr double kAcrossSigma_m = 0.2;
 constexpr double kRadialSigma_m = 0.15;
+// A bottom edge cut off so far below the horizon is the picture's end, right before the car. The
+// contact lies anywhere nearer, in shares of the distance there.
+constexpr double kNear_rad = 0.2;
+constexpr double kCutRange = 0.7;
+constexpr double kCutSigma = 0.2;
+constexpr double kBeyondCut = 2.0;
 
 }  // namespace
 
@@ -33,13 +39,16 @@ Fix FixOf(const RadarLook& look, const RadarMeasurement& z) {
 }
 
 std::optional<Fix> FixOf(const CameraLook& look, const CameraMeasurement& z) {
-  if (z.bottom_is_cut || z.left_is_cut || z.right_is_cut) return std::nullopt;
-  if (!(z.depression_rad > 1e-3)) return std::nullopt;
+  if (z.left_is_cut || z.right_is_cut) return std::nullopt;
+  if (!(z.depression_rad > (z.bottom_is_cut ? kNear_rad : 1e-3))) return std::nullopt;
   const double middle = 0.5 * (z.azimuth_left_rad + z.azimuth_right_rad);
   const double tangent = std::tan(z.depression_rad);
-  const double range = look.camera.z_m / tangent;
-  const double range_sigma =
-      look.camera.z_m * (1.0 + tangent * tangent) / (tangent * tangent) * z.depression_sigma_rad;
+  // A bottom that the picture cuts off is nearer than where it is cut.
+  const double most = look.camera.z_m / tangent;
+  const double range = z.bottom_is_cut ? kCutRange * most : most;
+  const double range_sigma = z.bottom_is_cut ? kCutSigma * most
+                                             : look.camera.z_m * (1.0 + tangent * tangent) /
+                                                   (tangent * tangent) * z.depression_sigma_rad;
   const double bearing = middle + look.camera.yaw_rad + look.ego.X_OB.yaw_rad();
   const Eigen::Vector2d line(std::cos(bearing), std::sin(bearing));
   const Eigen::Vector2d across(-line.y(), line.x());
@@ -48,6 +57,11 @@ std::optional<Fix> FixOf(const CameraLook& look, const CameraMeasurement& z) {
   return Fix{look.origin_O() + range * line,
              along_sigma * along_sigma * line * line.transpose() +
                  across_sigma * across_sigma * across * across.transpose()};
+}
+
+bool IsBeyondCut(const CameraLook& look, const CameraMeasurement& z, double range_m) {
+  if (!z.bottom_is_cut || !(z.depression_rad > kNear_rad)) return false;
+  return range_m > kBeyondCut * look.camera.z_m / std::tan(z.depression_rad);
 }
 
 }  // namespace v2vouch

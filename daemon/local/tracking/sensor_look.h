@@ -36,7 +36,12 @@ struct Fix {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
 };
 Fix FixOf(const RadarLook& look, const RadarMeasurement& measurement);
-/// nullopt where the box has no usable bottom edge or bearing, or lies on the horizon.
+/// nullopt where the box has no usable bottom edge or bearing, or lies on the horizon. A bottom
+/// that the lower end of the picture cuts off, right before the car, is a bound: anywhere nearer.
 std::optional<Fix> FixOf(const CameraLook& look, const CameraMeasurement& measurement);
+
+/// Whether the picture's lower end cuts the box off right before the car, so that something that
+/// begins `range_m` from the camera, much farther than where it is cut, cannot be what it shows.
+bool IsBeyondCut(const CameraLook& look, const CameraMeasurement& measurement, double range_m);
 
 }  // namespace v2vouch

@@ -14,6 +14,9 @@ namespace {
 // Clutter of a camera: boxes anywhere in the picture, width and depression spread over these.
 constexpr double kBoxWidthSpan_rad = 0.3;
 constexpr double kDepressionSpan_rad = 0.2;
+// False boxes are of what is far; of those that lie on the ground before the car, nearer than
+// kDepressionSpan_rad says, so few are.
+constexpr double kFalseNear = 0.02;
 // Detection probability of a picture that should show the vehicle.
 constexpr double kExpectedInPicture = 0.7;
 constexpr std::size_t kMostBoxes = 128;
@@ -37,11 +40,12 @@ void AddCandidates(const CameraLook& look, std::span<const CameraMeasurement> me
       config.birth_per_m2_s * camera.period_s * HalfViewOf(camera) * reach_m * reach_m;
   const double clutter =
       std::max(camera.clutter_per_image, table.CrowdOf(std::min(measurements.size(), kMostBoxes)));
-  const double birth_existence = BirthExistence(births, clutter);
   for (const CameraMeasurement& z : measurements) {
+    const double false_share = z.depression_rad > kDepressionSpan_rad ? kFalseNear : 1.0;
     Candidate candidate;
-    candidate.birth_existence = birth_existence;
-    candidate.log_density = std::log(clutter / Cells(z, look) / (1.0 - birth_existence));
+    candidate.birth_existence = BirthExistence(births, clutter * false_share);
+    candidate.log_density =
+        std::log(clutter * false_share / Cells(z, look) / (1.0 - candidate.birth_existence));
     candidate.may_start = IsFinite(z);
     candidates.Add(candidate);
   }
@@ -103,6 +107,7 @@ void Tracker::CompareCameraBoxes(const CameraLook& look,
     for (std::size_t j = 0; j < measurements.size(); ++j) {
       const CameraMeasurement& z = measurements[j];
       if (!association_.candidates()[j].may_start) continue;
+      if (IsBeyondCut(look, z, range_m - 0.5 * track.extent.length_m)) continue;
       const double middle = 0.5 * (z.azimuth_left_rad + z.azimuth_right_rad);
       const double half =
           0.5 * (z.azimuth_left_rad - z.azimuth_right_rad) + kCoarseSigmas * z.azimuth_sigma_rad;
