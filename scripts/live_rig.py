@@ -75,6 +75,9 @@ def play(log, url, speed, loop_s, until_s, flood, pauses):
             for name, body in names:
                 stamp = struct.unpack_from(">q", body, 8)[0] + shift
                 body = body[:8] + struct.pack(">q", stamp) + body[16:]
+                # A BSM of an earlier lap must not be an old one: its generation time goes on too, where it has one.
+                if name == "BSM" and (made := struct.unpack_from(">q", body, 16)[0]) > 0:
+                    body = body[:16] + struct.pack(">q", made + shift) + body[24:]
                 try:
                     out.sendto(struct.pack(">II", SHORT, seq & 0xFFFFFFFF) + name.encode() + b"\0" + body, to)
                 except OSError:
