@@ -75,6 +75,11 @@ def play(log, url, speed, loop_s, until_s, flood, pauses):
             for name, body in names:
                 stamp = struct.unpack_from(">q", body, 8)[0] + shift
                 body = body[:8] + struct.pack(">q", stamp) + body[16:]
+                if name == "BSM" and lap > 0:  # Neither an old message nor a repeated one: later, of other senders.
+                    made, identity = struct.unpack_from(">q", body, 16)[0], struct.unpack_from(">I", body, 34)[0]
+                    body = bytearray(body)
+                    struct.pack_into(">q", body, 16, made + shift if made > 0 else 0)
+                    struct.pack_into(">I", body, 34, (identity + lap * 0x9E3779B1) & 0xFFFFFFFF)
                 try:
                     out.sendto(struct.pack(">II", SHORT, seq & 0xFFFFFFFF) + name.encode() + b"\0" + body, to)
                 except OSError:
@@ -119,6 +124,10 @@ class Program:
     def said(self):
         with open(os.path.join(self.folder, self.name + ".txt"), encoding="utf-8", errors="replace") as file:
             return file.read()
+
+    def has_ended_well(self, code):
+        """On a busy machine the daemon may be in the middle of a step: 1, and said so."""
+        return code == 0 or "in the middle of a step" in self.said()[-200:]
 
     def says(self, word, most_s=120.0):
         """Waits for that word of a program that has just been started. False: it ended, or never said it."""
@@ -167,7 +176,7 @@ class ListWatch(threading.Thread):
         self.lock, self.is_over = threading.Lock(), False
         self.lists, self.read, self.fresh, self.tracks, self.faults, self.status = 0, 0, 0, 0, [], None
         self.last, self.last_fresh = {}, None  # utime by channel; wall time of the last fresh list
-        self.longest_silence_s = 0.0
+        self.longest_silence_s, self.silent_from_s, self.born = 0.0, 0.0, time.monotonic()
 
     def new_life(self):
         """The daemon was ended on purpose: its time may begin anew, and silence is no fault."""
@@ -197,8 +206,8 @@ class ListWatch(threading.Thread):
         self.last[channel] = utime
         if channel == "TRACKS_LOCAL" and not stale:
             now = time.monotonic()
-            if self.last_fresh is not None:
-                self.longest_silence_s = max(self.longest_silence_s, now - self.last_fresh)
+            if self.last_fresh is not None and now - self.last_fresh > self.longest_silence_s:
+                self.longest_silence_s, self.silent_from_s = now - self.last_fresh, self.last_fresh - self.born
             self.last_fresh = now
             self.fresh += 1
         if self.lists % self.decode_each:

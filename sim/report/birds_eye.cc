@@ -134,6 +134,9 @@ void DrawNames(Svg& svg, const Evaluation& evaluation, const Window& window, Tim
       continue;
     }
     labels.Avoid(area);
+    // A name at the edge, of a vehicle that is hardly in the picture, would stand for nothing.
+    const double x = (area.left + area.right) / 2, y = (area.top + area.bottom) / 2;
+    if (x < 0.0 || x > kWidth || y < kTitle || y > kTitle + window.height()) continue;
     named.emplace_back(o, area);
   }
   const auto draw = [&](const std::pair<std::size_t, Area>& entry, bool is_critical) {

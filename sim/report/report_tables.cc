@@ -144,7 +144,7 @@ std::string DetailsHtml(const Evaluation& evaluation) {
          WithUnit(100.0 * evaluation.validated_share, 1, " %") + ".</p>\n<p>Seconds in PRIORITY: ";
   bool is_first = true;
   for (const auto& [id, seconds] : evaluation.hold_s) {
-    out += (is_first ? "vehicle " : ", vehicle ") + std::to_string(id) + " " + Number(seconds, 1);
+    out += (is_first ? "vehicle " : "; vehicle ") + std::to_string(id) + ": " + Number(seconds, 1);
     is_first = false;
   }
   return out + (is_first ? "none" : "") + ".</p>\n";

@@ -45,21 +45,23 @@ everything() { (cd "${tree}" && find . -xdev \( -path ./proc -o -path ./dev -o -
   -path ./var/lib/systemd/deb-systemd-helper-enabled \) -prune -o -print | sort); }
 
 inside apt-get -q update >/dev/null 2>&1 || skip "no package source reachable"
-# What the packages need comes first, so that what stays after removal is ours alone.
-needs="$(for deb in "${packages}"/v2vouch*.deb; do dpkg-deb -f "${deb}" Depends; done | tr ',|' '\n\n' |
-  sed -E 's/\(.*//; s/ //g' | grep -v '^v2vouch' | sort -u)"
-mapfile -t names < <(for name in ${needs}; do
-  if inside apt-cache show --no-all-versions "${name}" >/dev/null 2>&1; then echo "${name}"; fi; done)
-apt install python3 cmake make g++ pkg-config "${names[@]}"
-everything >"${tree}/root/before.txt"
-
 mkdir "${tree}/root/debs"
 cp "${packages}"/v2vouch*.deb "${tree}/root/debs/"
-(cd "${tree}/root/debs" && apt install $(ls v2vouch_*.deb | sed 's|^|/root/debs/|'))
-inside bash -euc 'cd /root
-  v2vouch-sim run left_turn --seed 1 --out drive.lcm
-  v2vouch-replay drive.lcm --out tracks.lcm
-  python3 /usr/share/doc/v2vouch/examples/python/consume_lists.py tracks.lcm' >"${tree}/root/said.txt" 2>&1 ||
+# What the packages need comes first, as apt chooses it, so that what stays after removal is ours alone.
+mapfile -t needs < <(inside bash -c 'apt-get -s --no-install-recommends install /root/debs/*.deb' |
+  awk '$1 == "Inst" && $2 !~ /^v2vouch/ { print $2 }')
+((${#needs[@]} > 10)) || fail "apt does not say what the packages need"
+apt install python3 cmake make g++ pkg-config "${needs[@]}"
+everything >"${tree}/root/before.txt"
+
+# The README's own lines, as they stand there, but for the build and the removal.
+source="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
+sed -n '/^## From a package$/,/^## /{/^```sh$/,/^```$/p}' "${source}/README.md" |
+  grep -v -e '^```' -e '^scripts/package' -e '^apt purge' >"${tree}/root/readme.sh"
+grep -q consume_lists.py "${tree}/root/readme.sh" || fail "the README's lines on packages are not found"
+mkdir -p "${tree}/root/build/package" && ln -s ../../debs "${tree}/root/build/package/packages"
+echo 'Apt { Get::Assume-Yes "true"; Install-Recommends "false"; };' >"${tree}/root/apt.conf"
+inside env APT_CONFIG=/root/apt.conf bash -euc 'cd /root; . ./readme.sh' >"${tree}/root/said.txt" 2>&1 ||
   { tail -n 20 "${tree}/root/said.txt"; fail "a log to tracks in the Python consumer"; }
 grep -q "PRIORITY .*hidden" "${tree}/root/said.txt" || { tail "${tree}/root/said.txt"; fail "no hidden vehicle"; }
 echo "the Python consumer: $(grep -c "PRIORITY " "${tree}/root/said.txt") lines of PRIORITY," \
@@ -70,10 +72,14 @@ cp -r "$(dirname "${BASH_SOURCE[0]}")/consumer" "${tree}/root/consumer"
 inside bash -euc 'cd /root
   cmake -S consumer -B out && cmake --build out && [ "$(out/types_only)" = good ] && [ "$(out/wire)" = good ]
   g++ -std=c++17 consumer/types_only.cc -o by_pkg_config $(pkg-config --cflags --libs v2vouch)
-  [ "$(./by_pkg_config)" = good ]' >"${tree}/root/said.txt" 2>&1 ||
+  [ "$(./by_pkg_config)" = good ]
+  PYTHONPATH=/usr/share/v2vouch/python python3 -c "import v2vouch; v2vouch.track_list_t().encode()"
+  v2vouch-view --version && man_pages=$(ls /usr/share/man/man[18]/v2vouch*) && [ -n "${man_pages}" ]' >"${tree}/root/said.txt" 2>&1 ||
   { tail -n 20 "${tree}/root/said.txt"; fail "a program of somebody else"; }
 mkdir -p "${tree}/var/lib/v2vouch" && touch "${tree}/var/lib/v2vouch/trust.state"  # As after a day of service.
 
+# A folder that Python has put beside the message classes goes too.
+ls -d "${tree}"/usr/share/v2vouch/python/v2vouch/__pycache__ >/dev/null || fail "Python keeps no cache here"
 apt purge 'v2vouch*'
 everything >"${tree}/root/after.txt"
 diff "${tree}/root/before.txt" "${tree}/root/after.txt" || fail "removal left or took something"

@@ -105,10 +105,12 @@ examples_build/consume_lists "file://tracks.lcm?speed=0" >consumer.txt && grep -
 mkdir without
 printf '#!/bin/sh\nexit 1\n' >without/lcm-gen
 chmod +x without/lcm-gen
-PATH="${place}/work/without:${PATH}" python3 "${prefix}/share/doc/v2vouch/examples/python/consume_lists.py" \
+PATH="${place}/work/without:${PATH}" env -u PYTHONDONTWRITEBYTECODE python3 "${prefix}/share/doc/v2vouch/examples/python/consume_lists.py" \
   tracks.lcm >consumer.txt &&
   grep -q "LOCAL " consumer.txt || fail "Python consumer of a log"
-if find "${prefix}" -name __pycache__ | grep .; then fail "Python has left something behind"; fi
+# Beside the example that was run Python may keep a cache; beside the message classes the reader sees that it does not.
+rm -rf "${prefix}/share/doc/v2vouch/examples/python/__pycache__"
+[[ -z "$(find "${prefix}" -name __pycache__)" ]] || fail "Python has left something behind"
 for program in cmake_build/types_only cmake_build/wire ./by_pkg_config; do
   [[ "$("${program}")" == good ]] || fail "${program}"
 done

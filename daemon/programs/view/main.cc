@@ -52,6 +52,12 @@ struct Options {
   v2vouch::view::AccessRules rules;
 };
 
+/// The bus as the page names it: without options.
+std::string BusName(const std::string& url) {
+  const std::string name = v2vouch::EffectiveLcmUrl(url);
+  return name.empty() ? "LCM's default bus" : name.substr(0, name.find('?'));
+}
+
 std::string CheckAddress(const std::string& text) {
   std::array<unsigned char, sizeof(in6_addr)> parsed{};
   for (const int family : {AF_INET, AF_INET6}) {
@@ -133,7 +139,9 @@ int Run(const Options& options, const v2vouch::DaemonConfig& config) {
     live = std::make_unique<LiveSource>(url, scene.Channels());
   }
   view::Hub hub(scene, player.get(), NewToken());
-  hub.source_name = options.log.empty() ? "live" : options.log;
+  hub.source_name = options.log.empty()
+                        ? BusName(options.lcm_url.empty() ? config.lcm.url : options.lcm_url)
+                        : options.log;
   view::AccessRules rules = options.rules;
   if (!options.has_no_token) rules.token = NewToken();
   Server server(hub, rules);

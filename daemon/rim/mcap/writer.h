@@ -18,7 +18,8 @@ namespace v2vouch::mcap {
 struct WriterOptions {
   std::string library;  ///< Who wrote the file.
   Compression compression = Compression::kZstd;
-  std::size_t chunk_bytes = 1U << 20U;         ///< A chunk ends once it has so many,
+  /// A chunk ends once it has so many (0: 512 KiB without compression, else 1 MiB),
+  std::size_t chunk_bytes = 0;
   std::int64_t chunk_ns = 1'000'000'000;       ///< or spans so long with
   std::size_t short_chunk_bytes = 64U << 10U;  ///< at least so many.
 };

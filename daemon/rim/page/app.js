@@ -38,7 +38,7 @@ const client = new ViewClient({
     const t = status.t * 1e-6;
     if (status.t !== undefined) {
       const whole = status.latency.find((l) => l.stage === "input_to_list") || status.latency[status.latency.length - 1];
-      if (whole) strips.add("latency p99, " + whole.stage.replaceAll("_", " "), "us", t, whole.p99);
+      if (whole) strips.add("latency p99, " + whole.stage.replaceAll("_", " "), "ms", t, whole.p99 / 1000);
       strips.add("tracks, LOCAL", "", t, status.local);
       strips.add("tracks, PRIORITY", "", t, status.priority);
       strips.add("messages in", "/s", t, status.inputs.reduce((sum, i) => sum + (i.hz || 0), 0));
@@ -144,7 +144,7 @@ function showInputs() {
 }
 function addEvent(event) {
   const item = element("li"), button = element("button", undefined, event.kind);
-  button.append(element("b", ""), document.createTextNode(event.text));
+  button.append(element("b", ""), document.createTextNode(Words.unbroken(event.text)));
   button.dataset.t = event.t;
   button.onclick = () => {
     view.chosen = Timeline.subject(event) || view.chosen;
@@ -261,5 +261,5 @@ function legend() {
 legend();
 showInputs();
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { view.restyle(); legend(); view.draw(); });
-new ResizeObserver(() => view.draw()).observe($("stage"));
+new ResizeObserver(() => { view.reserve = $("layers").offsetHeight + 12; view.draw(); }).observe($("stage"));
 showDetails();

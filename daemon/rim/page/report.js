@@ -21,11 +21,16 @@ class Clip {
     this.parts.play.onclick = () => this.toggle();
     for (const event of data.events) this.addEvent(event);
     root.addEventListener("keydown", (e) => this.key(e));
-    new ResizeObserver(() => this.draw()).observe(part("stage"));
-    this.seek(data.first || this.begin);
+    new ResizeObserver(() => { this.view.reserve = part("layers").offsetHeight + 12; this.draw(); }).observe(part("stage"));
+    this.seek(data.first || this.fullest());
+  }
+  /** Where nobody has chosen a moment: the first with the most vehicles. An empty picture says nothing. */
+  fullest() {
+    const count = (frame) => frame.local.length + frame.priority.length;
+    return this.data.frames.reduce((best, frame) => count(frame) > count(best) ? frame : best).at;
   }
   addEvent(event) {
-    const item = Details.element("li"), button = Details.element("button", ((event.t - this.begin) * 1e-6).toFixed(1) + " s  " + event.text, event.kind);
+    const item = Details.element("li"), button = Details.element("button", ((event.t - this.begin) * 1e-6).toFixed(1) + " s  " + Words.unbroken(event.text), event.kind);
     button.onclick = () => {
       this.view.chosen = Timeline.subject(event) || this.view.chosen;
       this.seek(event.t);

@@ -14,6 +14,7 @@ class SceneView {
     this.headingUp = true;
     this.chosen = null;       // {kind, id}
     this.hovered = null;
+    this.reserve = 0;         // Pixels at the bottom that something else covers.
     this.labels = [];
     this.layers = { fields: true, local: true, priority: true, senders: true, radar: true, camera: true,
       truth: true, map: true };
@@ -56,7 +57,7 @@ class SceneView {
     if (this.layers.priority) for (const track of this.frame.priority) this.drawPriority(track);
     this.drawWarnings();
     this.drawHovered();
-    this.placeLabels(width, height);
+    this.placeLabels(width, height - this.reserve);
   }
 
   // --- where things lie on the canvas
@@ -231,7 +232,7 @@ class SceneView {
       g.beginPath();
       g.arc(x, y, r * this.scale, 0, 2 * Math.PI);
       g.stroke();
-      this.rings.push([r + " m", x + 3, y - r * this.scale - 14]);
+      if (y - r * this.scale > 16) this.rings.push([r + " m", x + 3, y - r * this.scale - 14]);
     }
   }
   drawTrail() {

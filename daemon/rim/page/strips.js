@@ -38,7 +38,7 @@ class Strips {
       g.textAlign = "left";
       g.fillText(name, 0, 10);
       g.textAlign = "right";
-      const text = (v) => Number.isInteger(v) || v >= 10 ? v.toFixed(0) : v.toFixed(1);
+      const text = (v) => Number.isInteger(v) || v >= 100 ? v.toFixed(0) : v.toFixed(1);
       g.fillText(last ? text(last[1]) + " " + unit + "  (most " + text(Math.max(...points.map((p) => p[1]))) + ")" : "none", w, 10);
       g.strokeStyle = style.getPropertyValue("--line");
       g.beginPath(); g.moveTo(0, h - 3); g.lineTo(w, h - 3); g.stroke();

@@ -23,8 +23,12 @@ const Words = {
   },
   sector: ["watched", "degraded", "blind"],
   number(value, decimals, unit) {
-    return value === null || value === undefined ? "none" : value.toFixed(decimals) + (unit ? " " + unit : "");
+    if (value === null || value === undefined) return "none";
+    const text = value.toFixed(decimals);  // Never -0.0.
+    return (/^-[0.]+$/.test(text) ? text.slice(1) : text) + (unit ? " " + unit : "");
   },
+  /** No line ends between a figure and its unit. */
+  unbroken(text) { return text.replace(/(\d) (m|s|m\/s)(?![a-z])/g, "$1\u00a0$2"); },
   /** The last digits of an id: enough to tell vehicles apart. */
   short(id) { return id.length > 5 ? id.slice(-5) : id; },
 };

@@ -17,6 +17,7 @@ using wire::SenderOf;
 
 constexpr std::size_t kMostEvents = 2000;
 constexpr std::size_t kMostRemembered = 4096;
+constexpr std::int64_t kBridgedLasts_us = 300'000;
 constexpr std::int64_t kVerdictBelongs_us = 1'000'000;  // A vehicle that ends this soon after one.
 
 std::string Short(std::int64_t id) {
@@ -81,6 +82,12 @@ void EventList::Forget() {
   has_list_ = false;
 }
 
+void EventList::TellBridged(Vehicle& vehicle, std::int64_t id, std::int64_t at) {
+  if (vehicle.is_told || at - vehicle.bridged_since < kBridgedLasts_us) return;
+  vehicle.is_told = true;
+  Add(vehicle.bridged_since, "bridged", vehicle.bridged_text, id, vehicle.sender);
+}
+
 void EventList::TakePriority(const track_list_t& list, std::int64_t at) {
   std::map<std::int64_t, Vehicle> now;
   for (const track_t& track : list.tracks) {
@@ -98,26 +105,32 @@ void EventList::TakePriority(const track_list_t& list, std::int64_t at) {
       }
       vehicle.bridged_since = at;
     } else {
-      vehicle.bridged_since = before->second.bridged_since;
-      if (vehicle.is_bridged && !before->second.is_bridged) {
+      Vehicle& last = before->second;
+      if (vehicle.is_bridged && !last.is_bridged) {
         vehicle.bridged_since = at;
-        const bool has_budget = std::isfinite(track.bridge_budget_s);
-        Add(at, "bridged",
-            name + " is hidden: carried by V2V" +
-                (has_budget ? ", at most " + Seconds(static_cast<std::int64_t>(
-                                                 1e6 * std::min(track.bridge_budget_s, 1e6)))
-                            : std::string()),
-            track.id, vehicle.sender);
-      } else if (!vehicle.is_bridged && before->second.is_bridged) {
-        Add(at, "seen_again",
-            name + " is seen again after " + Seconds(at - before->second.bridged_since), track.id,
-            vehicle.sender);
+        vehicle.bridged_text = name + " is hidden: carried by V2V";
+        if (std::isfinite(track.bridge_budget_s)) {
+          const double budget_s = std::min(track.bridge_budget_s, 1e6);
+          vehicle.bridged_text += ", at most " + Seconds(static_cast<std::int64_t>(1e6 * budget_s));
+        }
+      } else if (vehicle.is_bridged) {
+        TellBridged(last, track.id, at);
+        vehicle.is_told = last.is_told;
+        vehicle.bridged_since = last.bridged_since;
+        vehicle.bridged_text = last.bridged_text;
+      } else if (last.is_bridged) {
+        TellBridged(last, track.id, at);
+        if (last.is_told) {
+          Add(at, "seen_again", name + " is seen again after " + Seconds(at - last.bridged_since),
+              track.id, vehicle.sender);
+        }
       }
     }
     if (now.size() < kMostRemembered) now[track.id] = vehicle;
   }
-  for (const auto& [id, vehicle] : vehicles_) {
+  for (auto& [id, vehicle] : vehicles_) {
     if (now.contains(id)) continue;
+    if (vehicle.is_bridged) TellBridged(vehicle, id, at);
     const auto verdict = doubted_.find(vehicle.sender);
     const bool is_withdrawn =
         verdict != doubted_.end() && at - verdict->second < kVerdictBelongs_us;

@@ -17,7 +17,8 @@ namespace v2vouch::view {
 /// One mark on the time line.
 struct ViewEvent {
   std::int64_t number = 0;  ///< Counts from 0, also over those forgotten.
-  std::int64_t at = 0;      ///< When the message that told it arrived, microseconds.
+  /// When the message that told it arrived, microseconds. `bridged` comes up to 0.3 s after that.
+  std::int64_t at = 0;
   /// validated, bridged, seen_again, ended, withdrawn, accused, warned, notice.
   std::string kind;
   std::string text;           ///< One plain sentence.
@@ -48,8 +49,13 @@ class EventList {
   struct Vehicle {
     std::uint32_t sender = 0;
     bool is_bridged = false;
+    bool is_told = false;  ///< That it is bridged.
     std::int64_t bridged_since = 0;
+    std::string bridged_text;
   };
+  /// Tells that it is bridged once that has lasted: at its first sight a vehicle may be so for one
+  /// list.
+  void TellBridged(Vehicle& vehicle, std::int64_t id, std::int64_t at);
   void Add(std::int64_t at, std::string kind, std::string text, std::int64_t track_id,
            std::uint32_t sender, std::int64_t local_id = 0);
 

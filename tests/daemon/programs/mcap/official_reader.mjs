@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What MCAP's own reader (@mcap/core) says of a file, as JSON: channels, messages, and how much was
-// read for opening and for a moment (0.1 s) in its middle.
+// read for opening, for a moment (0.1 s) in its middle, and for each of nine moments spread over it.
 //
 //     NODE_PATH=.../node_modules node official_reader.mjs FILE.mcap [--all]
 import { createRequire } from "node:module";
@@ -34,10 +34,17 @@ for (const channel of reader.channelsById.values()) {
 }
 const { messageStartTime, messageEndTime } = reader.statistics;
 const middle = (messageStartTime + messageEndTime) / 2n;
-reads = bytesRead = 0;
-let messages = 0;
-for await (const message of reader.readMessages({ startTime: middle, endTime: middle + 100_000_000n })) ++messages;
-result.seek = { reads, bytes: bytesRead, messages };
+async function take(startTime) {
+  reads = bytesRead = 0;
+  let messages = 0;
+  for await (const message of reader.readMessages({ startTime, endTime: startTime + 100_000_000n })) ++messages;
+  return { reads, bytes: bytesRead, messages };
+}
+result.seek = await take(middle);
+result.seeks = [];
+for (let tenth = 1n; tenth < 10n; ++tenth) {
+  result.seeks.push((await take(messageStartTime + (messageEndTime - messageStartTime) * tenth / 10n)).bytes);
+}
 if (process.argv.includes("--all")) {
   let last = -1n;
   for await (const message of reader.readMessages()) {

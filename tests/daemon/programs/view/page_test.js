@@ -318,7 +318,7 @@ test("live: SIGSTOP of the daemon turns the page grey in half a second, SIGCONT 
   await until("live picture", () => page.evaluate(() => document.getElementById("state").textContent.startsWith("live")), 30000);
   assert.ok(!(await page.evaluate(() => document.body.classList.contains("is-late"))));
   await until("latency on its strip", () => page.evaluate(() =>
-    (strips.strips.get("latency p99, input to list") || { points: [] }).points.some(([, us]) => us > 0)));
+    (strips.strips.get("latency p99, input to list") || { points: [] }).points.some(([, ms]) => ms > 0)));
   // By the page's own clock: from the last list to grey.
   await page.evaluate(() => {
     new MutationObserver(() => {

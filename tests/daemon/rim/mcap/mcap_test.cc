@@ -87,6 +87,18 @@ TEST_P(Mcap, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(reader->FindSchema(0), nullptr);
 }
 
+// A reader takes whole chunks and the list of them (about 230 bytes each): what it reads of 1 GB to
+// open the file and to have one moment stays below 1 MB with chunks of half a megabyte in the file.
+TEST(McapChunks, HoldHalfAMegabyteWithoutCompressionUnlessToldOtherwise) {
+  std::size_t written = 0;
+  Writer writer([&](std::span<const std::uint8_t> bytes) { written += bytes.size(); },
+                {.library = "test", .compression = Compression::kNone});
+  const auto channel = writer.AddChannel({0, 0, "A", "lcm", {}});
+  const Bytes data(1000);
+  for (std::uint32_t i = 0; i < 10'000; ++i) writer.Write(*channel, i, i, i, data);
+  EXPECT_NEAR(static_cast<double>(written) / static_cast<double>(writer.chunks()), 524'288, 30'000);
+}
+
 TEST_P(Mcap, FileThatACrashLeftIsReadUpToTheTear) {
   const Bytes file = SampleFile(GetParam(), 200);
   int before = -1;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "daemon/rim/json/json_text.h"
@@ -101,6 +102,24 @@ TEST(Scene, ALifeInPriorityIsToldAsEvents) {
   EXPECT_THAT(Kinds(scene), ElementsAre("validated", "bridged", "seen_again", "ended"));
   EXPECT_NE(scene.events().events()[2].text.find("4.3 s"), std::string::npos);
   EXPECT_EQ(scene.events().events()[1].at, 3'000'000);
+}
+
+TEST(Scene, AVehicleWithoutATrackForAnInstantIsNotToldAsHidden) {
+  Scene scene({}, {});
+  track_t track = Track(5, 30, 0);
+  track.bridge_budget_s = 6.0;
+  Take(scene, "TRACKS_PRIORITY", List(1'000'000, {}), 1'000'000);
+  for (const auto& [at, local] : std::map<std::int64_t, std::int64_t>{{2'000'000, 3},
+                                                                      {2'050'000, 0},
+                                                                      {2'100'000, 3},
+                                                                      {3'000'000, 0},
+                                                                      {3'200'000, 0},
+                                                                      {3'350'000, 0}}) {
+    track.local_id = local;
+    Take(scene, "TRACKS_PRIORITY", List(at, {track}), at);
+  }
+  EXPECT_THAT(Kinds(scene), ElementsAre("validated", "bridged"));
+  EXPECT_EQ(scene.events().events()[1].at, 3'000'000) << "when it began, not when it was sure";
 }
 
 TEST(Scene, AVerdictIsToldInPlainWordsWithItsFigures) {
