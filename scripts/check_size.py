@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 FUNCTION_LINES, FUNCTIONS = 60, 7  # How many lines a function may have; how many may have more.
-FILE_LINES, FILES = 300, 3
+FILE_LINES, FILES = 300, 4
 CLASS_LINES, CLASSES = 500, 0
 
 NOISE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])+\''

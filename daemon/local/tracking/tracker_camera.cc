@@ -14,8 +14,7 @@ namespace {
 // Clutter of a camera: boxes anywhere in the picture, width and depression spread over these.
 constexpr double kBoxWidthSpan_rad = 0.3;
 constexpr double kDepressionSpan_rad = 0.2;
-// False boxes are of what is far; of those that lie on the ground before the car, nearer than
-// kDepressionSpan_rad says, so few are.
+// False boxes are of what is far; of those right before the car so few are.
 constexpr double kFalseNear = 0.02;
 // Detection probability of a picture that should show the vehicle.
 constexpr double kExpectedInPicture = 0.7;
@@ -31,6 +30,13 @@ double HalfViewOf(const CameraConfig& camera) {
   return std::atan2(0.5 * camera.image_width_px, camera.fx_px);
 }
 
+// On the ground straight ahead of the car, nearer than clutter is, and with both its sides in the
+// picture: beside the road near boxes are parts of a row, and which of its cars is another question.
+bool IsRightBefore(const CameraConfig& camera, const CameraMeasurement& z) {
+  return z.depression_rad > kDepressionSpan_rad && !z.left_is_cut && !z.right_is_cut &&
+         z.azimuth_left_rad > -camera.yaw_rad && z.azimuth_right_rad < -camera.yaw_rad;
+}
+
 // The boxes of one picture. One that is not finite meets nothing and starts nothing.
 void AddCandidates(const CameraLook& look, std::span<const CameraMeasurement> measurements,
                    const TrackerConfig& config, TrackTable& table, Candidates& candidates) {
@@ -41,7 +47,7 @@ void AddCandidates(const CameraLook& look, std::span<const CameraMeasurement> me
   const double clutter =
       std::max(camera.clutter_per_image, table.CrowdOf(std::min(measurements.size(), kMostBoxes)));
   for (const CameraMeasurement& z : measurements) {
-    const double false_share = z.depression_rad > kDepressionSpan_rad ? kFalseNear : 1.0;
+    const double false_share = IsRightBefore(camera, z) ? kFalseNear : 1.0;
     Candidate candidate;
     candidate.birth_existence = BirthExistence(births, clutter * false_share);
     candidate.log_density =

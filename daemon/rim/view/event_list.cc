@@ -85,6 +85,8 @@ void EventList::Forget() {
 void EventList::TellBridged(Vehicle& vehicle, std::int64_t id, std::int64_t at) {
   if (vehicle.is_told || at - vehicle.bridged_since < kBridgedLasts_us) return;
   vehicle.is_told = true;
+  // One that is hidden at its first sight was not seen to become so.
+  if (vehicle.bridged_text.empty()) return;
   Add(vehicle.bridged_since, "bridged", vehicle.bridged_text, id, vehicle.sender);
 }
 
