@@ -244,7 +244,7 @@ void AddOptions(CLI::App& app, Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   v2vouch::GuardStandardStreams("v2vouch-eval");
   using namespace v2vouch::evaluation;
   CLI::App app(

@@ -31,7 +31,8 @@ double HalfViewOf(const CameraConfig& camera) {
 }
 
 // On the ground straight ahead of the car, nearer than clutter is, and with both its sides in the
-// picture: beside the road near boxes are parts of a row, and which of its cars is another question.
+// picture: beside the road near boxes are parts of a row, and which of its cars is another
+// question.
 bool IsRightBefore(const CameraConfig& camera, const CameraMeasurement& z) {
   return z.depression_rad > kDepressionSpan_rad && !z.left_is_cut && !z.right_is_cut &&
          z.azimuth_left_rad > -camera.yaw_rad && z.azimuth_right_rad < -camera.yaw_rad;

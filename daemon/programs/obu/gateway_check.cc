@@ -7,6 +7,8 @@
 #include <array>
 #include <map>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "daemon/obu/framing/layer.h"
 #include "daemon/programs/obu/own_output.h"
@@ -39,11 +41,15 @@ void CheckInput(const InputConfig& input, const std::string& name,
   for (const std::string& address : input.allow) {
     const std::string written = AsWritten(address);
     if (!written.empty() && written == address) continue;
-    const std::string what = written.empty()
-                                 ? ": must be an address of a unit, e.g. 192.168.88.40; names and "
-                                   "networks are not taken"
-                                 : ": write it as " + written;
-    problems.push_back(name + ".allow: " + address + what);
+    std::string problem = name;
+    problem.append(".allow: ").append(address);
+    if (written.empty()) {
+      problem.append(
+          ": must be an address of a unit, e.g. 192.168.88.40; names and networks are not taken");
+    } else {
+      problem.append(": write it as ").append(written);
+    }
+    problems.push_back(std::move(problem));
   }
 }
 
@@ -76,9 +82,12 @@ void CheckGatewayConfig(const GatewayConfig& config, std::vector<std::string>& p
     const InputConfig& input = config.inputs[i];
     const std::string name = "inputs[" + std::to_string(i) + "]";
     CheckInput(input, name, problems);
-    const std::string door = input.interface.empty()
-                                 ? input.bind + " port " + std::to_string(input.port)
-                                 : "interface " + input.interface + " " + input.filter;
+    std::string door = input.interface.empty() ? input.bind : "interface ";
+    if (input.interface.empty()) {
+      door.append(" port ").append(std::to_string(input.port));
+    } else {
+      door.append(input.interface).append(" ").append(input.filter);
+    }
     if (!doors.insert(door).second) problems.push_back(name + ": " + door + ": stands here twice");
   }
   if (const std::string problem = CheckLcmUrl(config.lcm_url); !problem.empty()) {
