@@ -15,16 +15,16 @@ enum class Source : std::int8_t { kLocal = 1, kPriority = 2, kBoth = 3 };
 
 /// One vehicle as a list tells of it. The state is in O, as the lists have it.
 struct Target {
+  KinematicState state_O;
   std::int64_t track_id = 0;  ///< Of PRIORITY; 0 = not there.
   std::int64_t local_id = 0;  ///< Of LOCAL; 0 = not there.
-  Source source = Source::kLocal;
-  KinematicState state_O;
-  Extent extent;
-  ObjectClass object_class = ObjectClass::kUnknown;
   double existence = 1.0;
-  Visibility visibility = Visibility::kVisible;
   Timestamp last_own{};           ///< Measured by an own sensor; 1970 = never.
   double bridge_budget_s = kNaN;  ///< Of PRIORITY; NaN = not applicable.
+  Extent extent;
+  Source source = Source::kLocal;
+  ObjectClass object_class = ObjectClass::kUnknown;
+  Visibility visibility = Visibility::kVisible;
   /// Faster than a vehicle can become since it was listed at a walk: a track that has slipped to
   /// something else. Set by the Warner.
   bool is_sudden = false;

@@ -61,12 +61,7 @@ bool Load(const std::string& path, v2vouch::evaluation::RunLog& log,
           v2vouch::evaluation::ReadScope scope = v2vouch::evaluation::ReadScope::kAll) {
   std::string error;
   if (v2vouch::evaluation::ReadRunLog(path, Progress("reading"), log, error, scope)) {
-    if (log.damaged > 0) {
-      std::fprintf(stderr,
-                   "v2vouch-eval: note: %s: %lld damaged stretches, cut off or overwritten; what "
-                   "they held is not judged\n",
-                   path.c_str(), static_cast<long long>(log.damaged));
-    }
+    v2vouch::NoteDamage("v2vouch-eval", path, log.damaged);
     return true;
   }
   std::fprintf(stderr, "v2vouch-eval: %s\n", error.c_str());

@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,8 +15,6 @@
 #include "daemon/rim/engine/engine.h"
 #include "daemon/rim/wire/codec.h"
 #include "sim/simulation/simulation.h"
-#include "sim/world/scenario.h"
-#include "sim/world/world.h"
 #include "tests/support/simulated_events.h"
 #include "v2vouch/ego_motion_t.hpp"
 #include "v2vouch/track_list_t.hpp"
@@ -28,17 +24,6 @@ namespace v2vouch::testing {
 namespace {
 
 using Recording = std::vector<sim::SimEvent>;
-
-Recording Drive(const std::string& name, const std::string& yaml) {
-  const std::string path = ::testing::TempDir() + "/" + name + ".yaml";
-  std::ofstream(path) << yaml;
-  sim::Scenario scenario;
-  std::vector<std::string> problems;
-  std::unique_ptr<sim::World> world;
-  if (sim::LoadScenario(path, scenario, problems)) world = sim::World::Make(scenario, 1, problems);
-  for (const std::string& problem : problems) ADD_FAILURE() << problem;
-  return world ? AllEvents(*world, 1) : Recording{};
-}
 
 Recording With(Recording recording, const std::function<void(ego_motion_t&)>& edit) {
   for (sim::SimEvent& event : recording) {
@@ -131,7 +116,7 @@ pole_rows:
 )";
 
 TEST(EgoMotionScenario, AWheelSpeedOf0AtWalkingPaceMakesNoVehicles) {
-  const Recording good = Drive("creep", kCreep);
+  const Recording good = EventsOf(kCreep, 1);
   ASSERT_FALSE(good.empty());
   const Result right = Perceive(good, 1);
   const Result edited = Perceive(With(good,
@@ -164,7 +149,7 @@ pole_rows:
 )";
 
 TEST(EgoMotionScenario, ASpeedWithoutSignMakesNoVehicles) {
-  const Recording good = Drive("back", kBack);
+  const Recording good = EventsOf(kBack, 1);
   ASSERT_FALSE(good.empty());
   const double right = Perceive(good, 101).false_per_list;
   for (const int gear : {3, 7}) {
@@ -193,7 +178,7 @@ vehicles:
 )";
 
 TEST(EgoMotionScenario, AGyroOffsetDoesNotTurnAStandingCar) {
-  const Recording good = Drive("stand", kStand);
+  const Recording good = EventsOf(kStand, 1);
   ASSERT_FALSE(good.empty());
   const double right = Perceive(good, 1).ego_yaw_rad;
   for (const double offset_degps : {0.5, -0.17, 0.1}) {

@@ -4,9 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,8 +13,6 @@
 #include "daemon/rim/engine/engine.h"
 #include "daemon/rim/wire/codec.h"
 #include "sim/simulation/simulation.h"
-#include "sim/world/scenario.h"
-#include "sim/world/world.h"
 #include "tests/support/simulated_events.h"
 #include "v2vouch/track_list_t.hpp"
 #include "v2vouch/truth_list_t.hpp"
@@ -31,23 +28,17 @@ constexpr double kSettled_s = 2.0;
 
 // The ego's centre stands at x = -40; both cars are 4.6 m long.
 std::vector<sim::SimEvent> Queue(double gap_m, std::uint64_t seed) {
-  const std::string path = ::testing::TempDir() + "/queue.yaml";
-  std::ofstream(path) << "name: queue\nduration_s: 4\n"
-                         "routes:\n"
-                         "  - name: east\n"
-                         "    waypoints: [{x_m: -100, y_m: -1.75}, {x_m: 300, y_m: -1.75}]\n"
-                         "ego:\n"
-                         "  drive: {route: east, start_m: 60, speed_mps: 0}\n"
-                         "parked:\n"
-                         "  - {id: 1, class: car, x_m: "
-                      << -40.0 + 4.6 + gap_m << ", y_m: " << kLane_m << ", yaw_deg: 0}\n";
-  sim::Scenario scenario;
-  std::vector<std::string> problems;
-  std::unique_ptr<sim::World> world;
-  if (sim::LoadScenario(path, scenario, problems))
-    world = sim::World::Make(scenario, seed, problems);
-  for (const std::string& problem : problems) ADD_FAILURE() << problem;
-  return world ? AllEvents(*world, seed) : std::vector<sim::SimEvent>{};
+  std::ostringstream yaml;
+  yaml << "name: queue\nduration_s: 4\n"
+          "routes:\n"
+          "  - name: east\n"
+          "    waypoints: [{x_m: -100, y_m: -1.75}, {x_m: 300, y_m: -1.75}]\n"
+          "ego:\n"
+          "  drive: {route: east, start_m: 60, speed_mps: 0}\n"
+          "parked:\n"
+          "  - {id: 1, class: car, x_m: "
+       << -40.0 + 4.6 + gap_m << ", y_m: " << kLane_m << ", yaw_deg: 0}\n";
+  return EventsOf(yaml.str(), seed);
 }
 
 struct Result {

@@ -25,6 +25,11 @@ inline double LargestSigma(const Eigen::Matrix2d& P) {
   return std::sqrt(std::max(mean + std::sqrt(half * half + P(0, 1) * P(0, 1)), 0.0));
 }
 
+/// How far from its centre a vehicle may be measured, for the coarse gate [m].
+inline double CoarseReach(const Eigen::Matrix2d& position_covariance, double length_m) {
+  return kCoarseSigmas * LargestSigma(position_covariance) + kLengthReach * length_m;
+}
+
 /// What association knows about one measurement before it meets a track.
 struct Candidate {
   Eigen::Vector2d p_O = Eigen::Vector2d::Zero();

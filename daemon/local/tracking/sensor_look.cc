@@ -9,9 +9,8 @@ namespace {
 // The middle of a box's bottom edge is this far from the middle of the vehicle's near face.
 constexpr double kAcrossSigma_m = 0.2;
 constexpr double kRadialSigma_m = 0.15;
-// A bottom edge cut off so far below the horizon is the picture's end, right before the car. The
-// contact lies anywhere nearer, in shares of the distance there.
-constexpr double kNear_rad = 0.2;
+// Of a bottom edge that the picture's end cuts off right before the car, the contact lies anywhere
+// nearer, in shares of the distance there.
 constexpr double kCutRange = 0.7;
 constexpr double kCutSigma = 0.2;
 constexpr double kBeyondCut = 2.0;
@@ -40,7 +39,7 @@ Fix FixOf(const RadarLook& look, const RadarMeasurement& z) {
 
 std::optional<Fix> FixOf(const CameraLook& look, const CameraMeasurement& z) {
   if (z.left_is_cut || z.right_is_cut) return std::nullopt;
-  if (!(z.depression_rad > (z.bottom_is_cut ? kNear_rad : 1e-3))) return std::nullopt;
+  if (!(z.depression_rad > (z.bottom_is_cut ? kRightBefore_rad : 1e-3))) return std::nullopt;
   const double middle = 0.5 * (z.azimuth_left_rad + z.azimuth_right_rad);
   const double tangent = std::tan(z.depression_rad);
   // A bottom that the picture cuts off is nearer than where it is cut.
@@ -60,7 +59,7 @@ std::optional<Fix> FixOf(const CameraLook& look, const CameraMeasurement& z) {
 }
 
 bool IsBeyondCut(const CameraLook& look, const CameraMeasurement& z, double range_m) {
-  if (!z.bottom_is_cut || !(z.depression_rad > kNear_rad)) return false;
+  if (!z.bottom_is_cut || !(z.depression_rad > kRightBefore_rad)) return false;
   return range_m > kBeyondCut * look.camera.z_m / std::tan(z.depression_rad);
 }
 

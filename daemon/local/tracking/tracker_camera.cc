@@ -30,11 +30,10 @@ double HalfViewOf(const CameraConfig& camera) {
   return std::atan2(0.5 * camera.image_width_px, camera.fx_px);
 }
 
-// On the ground straight ahead of the car, nearer than clutter is, and with both its sides in the
-// picture: beside the road near boxes are parts of a row, and which of its cars is another
-// question.
+// On the ground straight ahead of the car and near, with both its sides in the picture: beside the
+// road near boxes are parts of a row, and which of its cars is another question.
 bool IsRightBefore(const CameraConfig& camera, const CameraMeasurement& z) {
-  return z.depression_rad > kDepressionSpan_rad && !z.left_is_cut && !z.right_is_cut &&
+  return z.depression_rad > kRightBefore_rad && !z.left_is_cut && !z.right_is_cut &&
          z.azimuth_left_rad > -camera.yaw_rad && z.azimuth_right_rad < -camera.yaw_rad;
 }
 
@@ -106,8 +105,8 @@ void Tracker::CompareCameraBoxes(const CameraLook& look,
   for (std::size_t i = 0; i < table_.size(); ++i) {
     const auto [track, evidence] = table_[i];
     const Eigen::Vector2d line = evidence.filter.position_O() - look.origin_O();
-    const double reach_m = kCoarseSigmas * LargestSigma(evidence.filter.position_covariance()) +
-                           kLengthReach * track.extent.length_m;
+    const double reach_m =
+        CoarseReach(evidence.filter.position_covariance(), track.extent.length_m);
     const double range_m = line.norm();
     const double reach_rad = reach_m < range_m ? std::asin(reach_m / range_m) : kPi;
     const double bearing = WrapAngle(std::atan2(line.y(), line.x()) - axis);

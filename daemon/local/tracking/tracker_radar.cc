@@ -41,8 +41,8 @@ void Tracker::CompareClusters(const RadarLook& look,
   const Candidates& candidates = association_.candidates();
   for (std::size_t i = 0; i < table_.size(); ++i) {
     const auto [track, evidence] = table_[i];
-    const double reach_m = kCoarseSigmas * LargestSigma(evidence.filter.position_covariance()) +
-                           kLengthReach * track.extent.length_m;
+    const double reach_m =
+        CoarseReach(evidence.filter.position_covariance(), track.extent.length_m);
     // Long enough tried, a guess may meet standing returns by itself.
     const bool is_guess = !evidence.has_range;
     if (is_guess && evidence.glances.size() < Glances::kMost) continue;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/programs/obu/gateway_check.h"
 
-#include <arpa/inet.h>
-
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -14,40 +11,29 @@
 #include "daemon/programs/obu/own_output.h"
 #include "daemon/rim/io/event_log.h"
 #include "daemon/rim/io/lcm_url.h"
+#include "daemon/rim/net/source.h"
 
 namespace v2vouch::obu {
 namespace {
-
-// As the system writes it, which is how senders are told apart; "" = no address.
-std::string AsWritten(const std::string& address) {
-  std::array<unsigned char, 16> bytes{};
-  std::array<char, INET6_ADDRSTRLEN> text{};
-  for (const int family : {AF_INET, AF_INET6}) {
-    if (inet_pton(family, address.c_str(), bytes.data()) == 1) {
-      return inet_ntop(family, bytes.data(), text.data(), text.size());
-    }
-  }
-  return "";
-}
 
 void CheckInput(const InputConfig& input, const std::string& name,
                 std::vector<std::string>& problems) {
   if (input.framing != "auto" && !LayerOfName(input.framing)) {
     problems.push_back(name + ".framing = " + input.framing + ": is no framing; see --help");
   }
-  if (input.interface.empty() && AsWritten(input.bind).empty()) {
+  if (input.interface.empty() && !net::ParseAddress(input.bind)) {
     problems.push_back(name + ".bind = " + input.bind + ": must be an address of this computer");
   }
   for (const std::string& address : input.allow) {
-    const std::string written = AsWritten(address);
-    if (!written.empty() && written == address) continue;
+    const auto source = net::ParseAddress(address);
+    if (source && source->Text() == address) continue;
     std::string problem = name;
     problem.append(".allow: ").append(address);
-    if (written.empty()) {
+    if (!source) {
       problem.append(
           ": must be an address of a unit, e.g. 192.168.88.40; names and networks are not taken");
     } else {
-      problem.append(": write it as ").append(written);
+      problem.append(": write it as ").append(source->Text());
     }
     problems.push_back(std::move(problem));
   }
@@ -88,7 +74,11 @@ void CheckGatewayConfig(const GatewayConfig& config, std::vector<std::string>& p
     } else {
       door.append(input.interface).append(" ").append(input.filter);
     }
-    if (!doors.insert(door).second) problems.push_back(name + ": " + door + ": stands here twice");
+    if (!doors.insert(door).second) {
+      std::string problem = name;
+      problem.append(": ").append(door).append(": stands here twice");
+      problems.push_back(std::move(problem));
+    }
   }
   if (const std::string problem = CheckLcmUrl(config.lcm_url); !problem.empty()) {
     problems.push_back("lcm_url: " + problem);

@@ -48,7 +48,6 @@ class Loop {
           (input.allow.empty() ? " allow=anybody"
                                : " allow=" + std::to_string(input.allow.size())));
       waits_.push_back({door->descriptor(), POLLIN, 0});
-      is_open_.push_back(true);
       doors_.push_back(std::move(door));
     }
     std::string error;
@@ -66,16 +65,16 @@ class Loop {
           std::clamp<std::int64_t>((due - before + 999) / 1000, 0, kLongestWait_ms));
       poll(waits_.data(), waits_.size(), wait_ms);
       for (std::size_t i = 0; i < doors_.size(); ++i) {
+        const bool was_open = waits_[i].fd >= 0;
         const bool is_open = doors_[i]->Receive([&](const Arrival& arrival) {
           gateway_.OnDatagram(arrival, out_);
           const auto id = gateway_.TakeUnitSent();
           if (id && own_) own_->OnUnitSent(*id, Now());
         });
         waits_[i].fd = doors_[i]->descriptor();
-        if (is_open != is_open_[i]) {
+        if (is_open != was_open) {
           Log((is_open ? "event=interface_back " : "event=interface_gone ") + doors_[i]->text());
         }
-        is_open_[i] = is_open;
       }
       const std::int64_t now = Now();
       gateway_.Flush(now, out_);
@@ -165,7 +164,6 @@ class Loop {
   Gateway gateway_;
   std::vector<std::unique_ptr<InputDoor>> doors_;
   std::vector<pollfd> waits_;  // Of each door; poll() passes over -1.
-  std::vector<bool> is_open_;  // Of each door, when it was last asked.
   std::unique_ptr<LcmBus> bus_;
   std::unique_ptr<OwnOutput> own_;
   std::vector<bsm_t> out_;

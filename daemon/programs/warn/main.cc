@@ -48,10 +48,7 @@ int OverLog(const std::string& in, const std::string& out, const v2vouch::WarnFi
     std::cerr << "v2vouch-warn: " << error << '\n';
     return 1;
   }
-  if (result.damaged > 0) {
-    std::cerr << "v2vouch-warn: note: " << in << ": " << result.damaged
-              << " damaged stretches, cut off or overwritten; what they held is not judged\n";
-  }
+  v2vouch::NoteDamage("v2vouch-warn", in, result.damaged);
   std::cout << (as_json ? v2vouch::WarnJson(result) : v2vouch::WarnText(result));
   if (result.lists > 0) return 0;
   std::cerr << "v2vouch-warn: " << in << ": no list on " << file.channels.tracks_local << " or "
@@ -61,7 +58,7 @@ int OverLog(const std::string& in, const std::string& out, const v2vouch::WarnFi
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   v2vouch::GuardStandardStreams("v2vouch-warn");
   std::string in;
   std::string out;

@@ -7,12 +7,11 @@
 
 #include "daemon/rim/config/yaml_reader.h"
 #include "daemon/rim/config/yaml_writer.h"
+#include "daemon/rim/io/event_log.h"
 #include "daemon/rim/wire/input_decoder.h"
 
 namespace v2vouch {
 namespace {
-
-constexpr std::size_t kMaxChannelLength = 63;  // LCM's own limit.
 
 bool IsChannelName(const std::string& name) {
   const auto is_plain = [](char c) {
@@ -194,7 +193,7 @@ bool LoadDaemonConfig(const std::string& path, DaemonConfig& config,
     config.calibrated = LoadCalibration(file.string(), problems);
     if (problems.empty()) {
       ApplyCalibration(*config.calibrated, config.perception.vehicle, problems);
-      for (std::string& problem : problems) problem = file.string() + ": " + problem;
+      for (std::string& problem : problems) problem.insert(0, file.string() + ": ");
     }
   }
   return problems.empty();

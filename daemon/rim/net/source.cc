@@ -40,6 +40,12 @@ std::string Source::Text() const {
   return text.data();
 }
 
+std::optional<Source> ParseAddress(const std::string& text) {
+  Source source;
+  if (ReadAddress(text, source.address) == 0) return std::nullopt;
+  return source;
+}
+
 bool SourceFilter::Parse(const std::vector<std::string>& entries, SourceFilter& filter,
                          std::string& error) {
   filter.networks_.clear();

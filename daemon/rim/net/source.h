@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ struct Source {
   /// The address: "192.168.1.7", "fe80::1".
   [[nodiscard]] std::string Text() const;
 };
+
+/// The source of port 0 at an address written out; nullopt: no address. Its Text() is how senders
+/// of that address are told.
+std::optional<Source> ParseAddress(const std::string& text);
 
 /// Addresses and networks that may send. Empty: anybody.
 class SourceFilter {

@@ -2,6 +2,7 @@
 #include "daemon/rim/program/command_line.h"
 
 #include <cstdio>
+#include <iostream>
 #include <sstream>
 
 #include "daemon/common/base/did_you_mean.h"
@@ -28,7 +29,7 @@ std::string Hints(const CLI::App& app) {
   for (const std::string& extra : app.remaining(true)) {
     const std::string word = extra.substr(0, extra.find('='));
     const std::string hint = DidYouMean(word, word.starts_with("-") ? options : commands);
-    if (!hint.empty()) hints += "\n" + word + hint;
+    if (!hint.empty()) hints.append("\n").append(word).append(hint);
   }
   return hints;
 }
@@ -77,6 +78,12 @@ std::optional<int> ReadCommandLine(CLI::App& app, const std::string& name, int a
                  error.what(), hints.c_str(), name.c_str());
     return kExitUsage;
   }
+}
+
+void NoteDamage(const std::string& name, const std::string& path, std::int64_t damaged) {
+  if (damaged == 0) return;
+  std::cerr << name << ": note: " << path << ": " << damaged
+            << " damaged stretches, cut off or overwritten; what they held is not judged\n";
 }
 
 CLI::Validator OneOf(std::vector<std::string> words) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,10 @@ inline constexpr int kExitUsage = 2;   ///< Usage or configuration.
 /// unset shell variable leaves behind. So is a negative number where none can be.
 /// @return the exit code where the program is to end now.
 std::optional<int> ReadCommandLine(CLI::App& app, const std::string& name, int argc, char** argv);
+
+/// Tells on standard error, as a note of program `name`, that a log has damaged stretches; nothing
+/// where it has none.
+void NoteDamage(const std::string& name, const std::string& path, std::int64_t damaged);
 
 /// For `option->check(...)`: one of these words, with the nearest one named where it is not.
 CLI::Validator OneOf(std::vector<std::string> words);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "daemon/common/data/check.h"
 #include "daemon/rim/wire/sender_id.h"
@@ -119,7 +120,7 @@ void EventList::TakePriority(const track_list_t& list, std::int64_t at) {
         TellBridged(last, track.id, at);
         vehicle.is_told = last.is_told;
         vehicle.bridged_since = last.bridged_since;
-        vehicle.bridged_text = last.bridged_text;
+        vehicle.bridged_text = std::move(last.bridged_text);
       } else if (last.is_bridged) {
         TellBridged(last, track.id, at);
         if (last.is_told) {

@@ -196,7 +196,6 @@ TEST(WrongClock, OfAllSteppingTogetherStartsAgainWithinHalfASecond) {
   }
 }
 
-// The scans of half a second to ten seconds at once, after a hung bridge.
 // Nothing of the car's own disagrees, so only the senders' time can show it.
 TEST(WrongClock, OfTheWholeCarAgainstUtcIsTold) {
   const SyntheticDrive drive = Traffic(14.0);
@@ -226,6 +225,7 @@ TEST(WrongClock, OfTheWholeCarAgainstUtcIsTold) {
   }
 }
 
+// The scans of half a second to ten seconds at once, after a hung bridge.
 TEST(WrongClock, ABacklogOfOneSensorCostsNoTrackAndNoTrust) {
   const SyntheticDrive drive = Traffic();
   for (const int wrong : {1, 2, 4}) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What MCAP's own reader (@mcap/core) says of a file, as JSON: channels, messages, and how much was
-// read for opening, for a moment (0.1 s) in its middle, and for each of nine moments spread over it.
+// read for opening and for a moment (0.1 s) in its middle; with --seeks also for each of nine moments
+// spread over it.
 //
-//     NODE_PATH=.../node_modules node official_reader.mjs FILE.mcap [--all]
+//     NODE_PATH=.../node_modules node official_reader.mjs FILE.mcap [--all] [--seeks]
 import { createRequire } from "node:module";
 import { open } from "node:fs/promises";
 
@@ -41,9 +42,11 @@ async function take(startTime) {
   return { reads, bytes: bytesRead, messages };
 }
 result.seek = await take(middle);
-result.seeks = [];
-for (let tenth = 1n; tenth < 10n; ++tenth) {
-  result.seeks.push((await take(messageStartTime + (messageEndTime - messageStartTime) * tenth / 10n)).bytes);
+if (process.argv.includes("--seeks")) {
+  result.seeks = [];
+  for (let tenth = 1n; tenth < 10n; ++tenth) {
+    result.seeks.push((await take(messageStartTime + (messageEndTime - messageStartTime) * tenth / 10n)).bytes);
+  }
 }
 if (process.argv.includes("--all")) {
   let last = -1n;
