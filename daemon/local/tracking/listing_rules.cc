@@ -56,6 +56,7 @@ bool ListingRules::MayCoast(const LocalTrack& track, const TrackEvidence& eviden
 void ListingRules::Judge(Timestamp now, LocalTrack& track, TrackEvidence& evidence) const {
   if (!track.is_confirmed && IsConvincing(track, evidence)) {
     track.is_confirmed = true;
+    evidence.was_listed = true;
   } else if (track.is_confirmed &&
              (track.existence < config_.keep_existence || !IsWorthListing(track, evidence) ||
               IsTransparent(track, evidence) || IsOverdue(track, evidence, now))) {

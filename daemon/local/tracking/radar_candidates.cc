@@ -54,7 +54,8 @@ void DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement> measure
 }  // namespace
 
 void AddRadarCandidates(const RadarLook& look, std::span<const RadarMeasurement> measurements,
-                        double birth_per_m2_s, const TrackTable& table, Candidates& candidates) {
+                        double birth_per_m2_s, const TrackTable& table, const ClutterMap& clutter_map,
+                        Candidates& candidates) {
   const RadarConfig& radar = look.radar;
   const double cells = (radar.max_range_m - radar.min_range_m) * 2.0 * radar.half_fov_rad;
   const double births =
@@ -65,7 +66,6 @@ void AddRadarCandidates(const RadarLook& look, std::span<const RadarMeasurement>
   const double clutter = is_crowded ? crowd : radar.clutter_per_scan;
   CrowdShape crowd_shape;
   if (is_crowded) crowd_shape.Fill(radar, measurements);
-  const double birth_existence = BirthExistence(births, clutter);
   const double moving_density = clutter / (cells * kDopplerSpan_mps);
   const double static_density =
       (static_cast<double>(standing) + 1.0) / (cells * kStaticDopplerSpan_mps);
@@ -80,10 +80,14 @@ void AddRadarCandidates(const RadarLook& look, std::span<const RadarMeasurement>
     } else {
       candidate.p_O = Candidate::Nowhere();
     }
-    candidate.birth_existence = birth_existence;
-    double density = z.is_static ? static_density : moving_density;
-    if (is_crowded && !z.is_static) density *= crowd_shape.At(z);
-    candidate.log_density = std::log(density / (1.0 - birth_existence));
+    double density = static_density;
+    if (!z.is_static) {
+      const double of_scan = is_crowded ? moving_density * crowd_shape.At(z) : moving_density;
+      density = std::max(of_scan, clutter_map.DensityAt(radar, z));
+    }
+    candidate.birth_existence =
+        BirthExistence(births, clutter * std::max(density / moving_density, 1.0));
+    candidate.log_density = std::log(density / (1.0 - candidate.birth_existence));
     candidates.Add(candidate);
   }
   DenyEchoes(look, measurements, candidates);

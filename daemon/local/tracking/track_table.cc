@@ -41,6 +41,7 @@ TrackTable::TrackTable(const TrackerConfig& config)
 
 double TrackTable::Predict(Timestamp stamp) {
   faults_.clear();
+  came_to_nothing_.clear();
   const double dt_s = tracks_.empty() ? 0.0 : std::max(0.0, ToSeconds(stamp - now_));
   now_ = stamp;
   const double survival = std::pow(survival_per_s_, dt_s);
@@ -159,7 +160,12 @@ void TrackTable::EndUnlikely() {
 void TrackTable::RemoveEnded() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (evidence_[i].is_ended) continue;
+    if (evidence_[i].is_ended) {
+      if (evidence_[i].clutter_cell >= 0 && !evidence_[i].was_listed) {
+        came_to_nothing_.push_back({evidence_[i].clutter_cell, tracks_[i].radar_hits()});
+      }
+      continue;
+    }
     if (kept != i) {
       tracks_[kept] = tracks_[i];
       evidence_[kept] = evidence_[i];

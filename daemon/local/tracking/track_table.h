@@ -36,6 +36,12 @@ class TrackTable {
     const TrackEvidence& evidence;
   };
 
+  /// A track that a radar started and that ended without having been listed.
+  struct Nothing {
+    int clutter_cell = -1;
+    int radar_hits = 0;
+  };
+
   explicit TrackTable(const TrackerConfig& config);
 
   /// Brings every track to `stamp` (>= the last one), forgets the faults of the last step and drops
@@ -69,6 +75,8 @@ class TrackTable {
   Row back() { return (*this)[size() - 1]; }
   [[nodiscard]] std::span<const LocalTrack> tracks() const { return tracks_; }
   [[nodiscard]] std::span<const Reason> faults() const { return faults_; }
+  /// What has ended so since the last Predict began.
+  [[nodiscard]] std::span<const Nothing> came_to_nothing() const { return came_to_nothing_; }
   [[nodiscard]] Timestamp now() const { return now_; }
   [[nodiscard]] const FilterSettings& settings() const { return settings_; }
 
@@ -95,6 +103,7 @@ class TrackTable {
   std::vector<LocalTrack> tracks_;
   std::vector<TrackEvidence> evidence_;  // Of the track with the same index.
   std::vector<Reason> faults_;
+  std::vector<Nothing> came_to_nothing_;
   Scratch<std::vector<std::size_t>> guesses_;
 };
 

@@ -11,9 +11,15 @@ Tracker::Tracker(const TrackerConfig& config, const VehicleConfig& vehicle)
       vehicle_(std::make_shared<const VehicleConfig>(vehicle)),
       table_(config),
       association_(config),
-      returns_(config.point_targets) {}
+      returns_(config.point_targets),
+      clutter_(vehicle.radars.size()) {}
 
-void Tracker::Predict(Timestamp stamp) { since_frame_s_ += table_.Predict(stamp); }
+void Tracker::Predict(Timestamp stamp) {
+  for (const TrackTable::Nothing& nothing : table_.came_to_nothing()) {
+    clutter_.Count(nothing.clutter_cell, nothing.radar_hits);
+  }
+  since_frame_s_ += table_.Predict(stamp);
+}
 
 void Tracker::Begin(SensorKey sensor, const DetectabilityOf& detectability) {
   updates_.clear();

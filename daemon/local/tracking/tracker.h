@@ -14,6 +14,7 @@
 #include "daemon/common/data/vehicle.h"
 #include "daemon/local/tracking/association.h"
 #include "daemon/local/tracking/cluster_owner.h"
+#include "daemon/local/tracking/clutter_map.h"
 #include "daemon/local/tracking/detectability.h"
 #include "daemon/local/tracking/one_vehicle.h"
 #include "daemon/local/tracking/road_directions.h"
@@ -157,6 +158,7 @@ class Tracker {
   ClusterOwners owners_;
   StandingReturns returns_;
   RoadDirections roads_;
+  ClutterMap clutter_;
   OneVehicle one_vehicle_;
   std::vector<SensorUpdate> updates_;
   std::vector<PoseUpdate> pose_updates_;

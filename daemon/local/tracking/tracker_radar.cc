@@ -14,6 +14,7 @@ namespace {
 constexpr double kClearLook = 0.4;
 // For so long second echoes alone keep a vehicle.
 constexpr double kEchoAlone_s = 1.0;
+constexpr double kTravelled_m = 3.0;
 
 }  // namespace
 
@@ -22,8 +23,10 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
                           const DetectabilityOf& detectability) {
   const RadarLook look{ego, vehicle_->radars[static_cast<std::size_t>(radar)]};
   const SensorKey sensor{SensorKind::kRadar, radar};
+  clutter_.Age(radar);
   Begin(sensor, detectability);
-  AddRadarCandidates(look, measurements, config_.birth_per_m2_s, table_, association_.candidates());
+  AddRadarCandidates(look, measurements, config_.birth_per_m2_s, table_, clutter_,
+                     association_.candidates());
   CompareClusters(look, measurements);
   association_.Solve(measurements.size(), Proof::kRepeated, table_);
   owners_.Find(look, measurements, table_, association_);
@@ -47,7 +50,7 @@ void Tracker::CompareClusters(const RadarLook& look,
     const bool is_guess = !evidence.has_range;
     if (is_guess && evidence.glances.size() < Glances::kMost) continue;
     const bool takes_standing = track.camera_hits() + track.object_hits() > 0 ||
-                                evidence.moving_hits >= config_.confirm_hits;
+                                (evidence.moving_hits >= config_.confirm_hits && evidence.has_travelled);
     const bool is_echo_alone = ToSeconds(table_.now() - evidence.borne_out) > kEchoAlone_s;
     candidates.ForEachNear(evidence.filter.position_O(), reach_m, [&](std::size_t j) {
       if (candidates[j].is_echo && is_echo_alone) return;
@@ -71,6 +74,7 @@ void Tracker::TakeCluster(const RadarLook& look, SensorKey sensor, std::size_t i
   } else {
     evidence.proven = std::max(evidence.proven, track.existence);
     ++evidence.moving_hits;
+    if ((given.p_O - evidence.first_moving_O).norm() > kTravelled_m) evidence.has_travelled = true;
   }
   // A sensor that tracks by itself has sorted its mirror images out.
   if (z.is_object || association_.expected().detection(i) >= kClearLook) ++evidence.clear_hits;
@@ -110,6 +114,8 @@ void Tracker::StartFromRadar(const RadarLook& look, SensorKey sensor,
     if (!table_.Start(filter, sensor, j, association_.BirthExistence(j))) continue;
     const auto [track, evidence] = table_.back();
     evidence.moving_hits = 1;
+    evidence.first_moving_O = candidates[j].p_O;
+    evidence.clutter_cell = ClutterMap::CellOf(look.radar, measurements[j]);
     NoteReflection(look, table_.size() - 1, candidates[j].p_O);
     updates_.push_back({track.id, measurements[j]});
   }
