@@ -25,6 +25,13 @@ constexpr double kEndSigma_m = 0.25;
 // Yaw rate that an estimate of it may miss while a vehicle begins to turn.
 constexpr double kYawRateDoubt_radps = 0.15;
 
+// A sensor that tracks by itself reports some point of the vehicle, a corner, a face or the centre,
+// and now and then another: on average half way to the near outline, off by this share of half the
+// vehicle's size. It stays for a while; the rest is new in every report.
+constexpr double kObjectMean = 0.5;
+constexpr double kObjectLasting = 0.5;
+constexpr double kObjectWhite = 1.2;
+
 bool IsPoint(double length_m, double width_m) { return length_m < kPoint_m || width_m < kPoint_m; }
 
 using D = Dual<kStateSize + 2>;
@@ -172,6 +179,22 @@ void AddScatter(const Mean& reflections, const Line& line, const RadarConfig& ra
   R.diagonal().array() += missing.max(0.0);
 }
 
+// Which point of the vehicle an object's place is: a lasting offset and noise.
+void AddReference(const Eigen::Vector2d& along, const Bearing& b, const Extent& extent,
+                  double range_m, Eigen::Matrix3d& R, Linearized& out) {
+  const double cosine = along.x() * b.c.value + along.y() * b.s.value;
+  const double sine = along.x() * b.s.value - along.y() * b.c.value;
+  const double radial_m =
+      0.5 * std::hypot(cosine * extent.length_m, sine * extent.width_m);
+  const double across_m =
+      0.5 * std::hypot(sine * extent.length_m, cosine * extent.width_m);
+  R(0, 0) += std::pow(kObjectWhite * radial_m, 2);
+  R(1, 1) += std::pow(kObjectWhite * across_m / range_m, 2);
+  out.O.setZero(3, 2);
+  out.O(0, 0) = kObjectLasting * radial_m / kDepthOffsetSigma_m;
+  out.O(1, 1) = kObjectLasting * across_m / (range_m * kAsideOffsetSigma);
+}
+
 }  // namespace
 
 Eigen::Vector2d AntennaVelocity_B(const EgoState& ego, const RadarConfig& radar) {
@@ -227,20 +250,25 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
 
   const bool is_point = IsPoint(extent.length_m, extent.width_m);
   const Mean mean = is_point ? Mean{} : MeanOfReflections(bearing, radar, X_OR.yaw_rad(), extent);
-  const D qx = px + mean.ox;
-  const D qy = py + mean.oy;
+  const double share = measurement.is_object ? kObjectMean : 1.0;
+  const D qx = px + share * mean.ox;
+  const D qy = py + share * mean.oy;
   const D range = sqrt(qx * qx + qy * qy);
   if (!(range.value > kMinRange_m)) return std::nullopt;
   // Every point of a turning vehicle moves with its centre plus yaw rate x offset.
   const D vx = speed * bearing.c - yaw_rate * mean.oy - D(v_R_O.x());
   const D vy = speed * bearing.s + yaw_rate * mean.ox - D(v_R_O.y());
   const D range_rate = (qx * vx + qy * vy) / range;
-  const auto near_end = NearEnd(px, py, bearing.c, bearing.s, extent);
+  const auto near_end = measurement.is_object
+                            ? std::nullopt
+                            : NearEnd(px, py, bearing.c, bearing.s, extent);
   Linearized out =
       Innovate({range, atan2(qy, qx), range_rate, near_end}, X_OR.yaw_rad(), radar, measurement);
   Eigen::Matrix3d R = measurement.covariance;
   const Eigen::Vector2d along(qx.value / range.value, qy.value / range.value);
-  if (!is_point) {
+  if (!is_point && measurement.is_object) {
+    AddReference(along, bearing, extent, range.value, R, out);
+  } else if (!is_point) {
     const Line line{along, {-along.y(), along.x()}, range.value, {vx.value, vy.value}, x[kYawRate]};
     AddScatter(mean, line, radar, measurement, R);
     if (near_end) {

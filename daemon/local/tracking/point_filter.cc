@@ -32,6 +32,9 @@ constexpr double kReflectionRadialSigma_m = 0.5;
 constexpr double kReflectionAcrossSigma_m = 0.9;
 constexpr double kPointRadialSigma_m = 0.15;
 constexpr double kPointAcrossSigma_m = 0.2;
+// An object's place may be any point of the vehicle, and another one soon.
+constexpr double kObjectRadialSigma_m = 1.3;
+constexpr double kObjectAcrossSigma_m = 0.8;
 // A velocity that points somewhere.
 constexpr double kDirectedSpeed_mps = 1.0;
 // One that is none: this sure, in the direction it is known worst.
@@ -60,6 +63,10 @@ Eigen::Matrix3d PointNoise(const RadarMeasurement& z, const RadarConfig& radar) 
                                square(kReflectionAcrossSigma_m / z.range_m)) /
                                   n) +
             square(kPointAcrossSigma_m / z.range_m);
+  if (z.is_object) {
+    R(0, 0) += square(kObjectRadialSigma_m);
+    R(1, 1) += square(kObjectAcrossSigma_m / z.range_m);
+  }
   const double unseen = kUnseenLooks * square(std::clamp(1.0 - z.visible_share, 0.0, 1.0));
   R(0, 0) += unseen * square(kReflectionRadialSigma_m);
   R(1, 1) += unseen * square(kReflectionAcrossSigma_m / z.range_m);

@@ -212,8 +212,8 @@ bool VehicleFilter::Update(const Look& look, const Measurement& z, bool is_young
 
 // Where scan after scan lies deep (or near), it is the filter that is off. `model`: of the
 // likeliest component.
-void VehicleFilter::NoteDepth(const RadarMeasurement&, const Linearized& model) {
-  if (model.O.rows() == 0) return;
+void VehicleFilter::NoteDepth(const RadarMeasurement& z, const Linearized& model) {
+  if (z.is_object || model.O.rows() == 0) return;
   const double depth = std::clamp(DepthOf(model, best()), -kMostDepth, kMostDepth);
   usual_depth_ += kDepthMemory * (depth - usual_depth_);
 }
@@ -224,7 +224,7 @@ bool VehicleFilter::may_move_face() const {
 }
 
 bool VehicleFilter::IsOffFace(const RadarMeasurement& z, const Linearized& model) const {
-  if (z.may_be_anothers || model.O.rows() == 0) return false;
+  if (z.is_object || z.may_be_anothers || model.O.rows() == 0) return false;
   const double deeper_m = model.y[0];
   if (usual_depth_ < -kOffSigmas) return deeper_m < -kOff_m;
   const bool is_car_in_motion = has_driven_ && std::abs(best().mean[kSpeed]) > kTurning_mps &&

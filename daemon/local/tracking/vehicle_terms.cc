@@ -50,8 +50,9 @@ std::optional<Linearized> Linearize(const ExtendedState& state, const Extent& ex
   return LinearizeCamera(state.mean.head<kStateSize>(), extent, look.ego, look.camera, z);
 }
 
-void Temper(const RadarMeasurement&, const ExtendedState& state, double usual_depth,
+void Temper(const RadarMeasurement& z, const ExtendedState& state, double usual_depth,
             Linearized& model) {
+  if (z.is_object) return;
   TemperDepth(DepthOf(model, state) - usual_depth, model);
 }
 
