@@ -23,11 +23,18 @@ constexpr double kEchoRange_m = 2.0;
 constexpr double kEchoSigmas = 3.0;
 constexpr double kEchoBearing_rad = 0.01;
 constexpr double kEchoRate_mps = 0.6;
-constexpr double kEchoWeaker_db = 10.0;
+constexpr double kEchoWeaker_db = 15.0;
 
 bool IsFinite(const RadarMeasurement& z) {
   return std::isfinite(z.range_m) && std::isfinite(z.azimuth_rad) &&
          std::isfinite(z.range_rate_mps) && z.covariance.allFinite() && z.range_m > 0.0;
+}
+
+// How far beside the nearer cluster a bearing is: its face may throw back from anywhere across.
+double AsideOf(const RadarMeasurement& z, double azimuth_rad) {
+  const double left = AngleDifference(azimuth_rad, std::max(z.azimuth_max_rad, z.azimuth_rad));
+  const double right = AngleDifference(std::min(z.azimuth_min_rad, z.azimuth_rad), azimuth_rad);
+  return std::max({left, right, 0.0});
 }
 
 // What is reflected between the car and the vehicle before it comes back from twice as far, at
@@ -41,7 +48,7 @@ void DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement> measure
     if (!candidates[j].may_start || echo.outline_count == 0) continue;
     for (const RadarMeasurement& z : measurements) {
       if (z.outline_count == 0 || std::abs(echo.range_m - 2.0 * z.range_m) > kEchoRange_m) continue;
-      if (std::abs(AngleDifference(echo.azimuth_rad, z.azimuth_rad)) > bearing_rad) continue;
+      if (AsideOf(z, echo.azimuth_rad) > bearing_rad) continue;
       if (std::abs(echo.range_rate_mps - 2.0 * z.range_rate_mps) > kEchoRate_mps) continue;
       if (z.outline[0].strength_db < echo.outline[0].strength_db + kEchoWeaker_db) continue;
       candidates[j].may_start = false;
