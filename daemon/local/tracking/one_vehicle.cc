@@ -17,6 +17,11 @@ constexpr double kTentativeHold_s = 0.1;
 // So many clusters out of another vehicle's box, and a track is no vehicle.
 constexpr int kMostBorrowed = 5;
 constexpr double kBorrowedAside_m = 0.3;
+// Vehicles that move faster than this keep more room between each other: what reflects so close to
+// one, at its speed, is a part of it.
+constexpr double kInMotion_mps = 5.0;
+constexpr double kNoRoom_m = 1.5;
+constexpr double kNoRoomAside_m = 0.6;
 // Vehicles one behind the other overlap by less than this.
 constexpr double kOverlap_m = 1.0;
 // A centre counts as inside of a box this far behind its ends.
@@ -51,11 +56,12 @@ bool IsSenior(const LocalTrack& a, const LocalTrack& b) {
 }
 
 // Whether a place lies in a vehicle's box, made longer by `beyond_m` at either end.
-bool LiesIn(const LocalTrack& track, const Eigen::Vector2d& p_O, double beyond_m) {
+bool LiesIn(const LocalTrack& track, const Eigen::Vector2d& p_O, double beyond_m,
+            double aside_m = kBorrowedAside_m) {
   const Eigen::Vector2d inside =
       Eigen::Rotation2D<double>(-track.state_O.mean[kYaw]) * (p_O - track.state_O.mean.head<2>());
   return std::abs(inside.x()) < 0.5 * track.extent.length_m + beyond_m &&
-         std::abs(inside.y()) < 0.5 * track.extent.width_m + kBorrowedAside_m;
+         std::abs(inside.y()) < 0.5 * track.extent.width_m + aside_m;
 }
 
 // One frame of a source of objects reported both: two boxes are two vehicles, however close they
@@ -101,7 +107,13 @@ bool Borrows(const TrackTable& table, std::size_t i, std::size_t j) {
   if (i == j || evidence.reflected != table.now()) return false;
   if (its_evidence.is_ended || !owner.is_confirmed) return false;
   if (!its_evidence.filter.is_vehicle() || AreSeenAsTwo(owner, track)) return false;
-  if (!LiesIn(owner, evidence.reflection_O, 0.0)) return false;
+  const bool in_motion = track.object_class == ObjectClass::kUnknown &&
+                         std::abs(owner.state_O.mean[kSpeed]) > kInMotion_mps &&
+                         VelocityDifference(evidence, its_evidence) < kSameSpeed_mps;
+  if (!LiesIn(owner, evidence.reflection_O, in_motion ? kNoRoom_m : 0.0,
+              in_motion ? kNoRoomAside_m : kBorrowedAside_m)) {
+    return false;
+  }
   return IsSenior(owner, track) || StandsBehind(table, i, j);
 }
 
