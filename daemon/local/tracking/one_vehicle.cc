@@ -33,6 +33,12 @@ constexpr double kPartSpeed_mps = 2.0;
 constexpr double kPartHold_s = 0.5;
 constexpr double kFreshReflection_s = 0.1;
 constexpr double kPartSigma_m = 1.5;
+// Of two tracks in one lane at one speed, with a gap of less than so long, for so long.
+constexpr double kConvoy_mps = 8.0;
+constexpr double kConvoySpeed_mps = 1.5;
+constexpr double kConvoyGap_s = 0.3;
+constexpr double kConvoyHold_s = 1.0;
+constexpr double kConvoyFresh_s = 0.3;
 // Velocities of one vehicle differ by less than this; a point's is known that much worse.
 constexpr double kSameSpeed_mps = 3.0;
 constexpr double kPointDoubt_mps = 8.0;
@@ -168,6 +174,33 @@ std::optional<double> LengthWithPart(const TrackTable& table, std::size_t i, std
   return from_face_m;
 }
 
+// How long vehicle j is if track i is its far end, whatever both were called: so close behind each
+// other, at one speed, nobody drives. nullopt where it cannot be.
+std::optional<double> LengthAsConvoy(const TrackTable& table, std::size_t i, std::size_t j) {
+  const auto [part, evidence] = table[i];
+  const auto [near, its_evidence] = table[j];
+  if (i == j || its_evidence.is_ended || !near.is_confirmed) return std::nullopt;
+  if (!its_evidence.filter.is_vehicle() || !evidence.filter.is_vehicle()) return std::nullopt;
+  const double speed_mps = std::abs(near.state_O.mean[kSpeed]);
+  if (speed_mps < kConvoy_mps) return std::nullopt;
+  if (part.support.SharesFrame(near.support, SensorKind::kCamera)) return std::nullopt;
+  if (AreSeenAsTwo(part, near)) return std::nullopt;
+  if (ToSeconds(table.now() - evidence.reflected) > kConvoyFresh_s) return std::nullopt;
+  if (VelocityDifference(evidence, its_evidence) > kConvoySpeed_mps) return std::nullopt;
+  const Eigen::Rotation2D<double> into(-near.state_O.mean[kYaw]);
+  const Eigen::Vector2d between = into * (evidence.reflection_O - near.state_O.mean.head<2>());
+  if (std::abs(between.y()) > kPartAside_m) return std::nullopt;
+  const Eigen::Vector2d sensor =
+      into * (its_evidence.filter.seen_from_O() - near.state_O.mean.head<2>());
+  const double behind_m = sensor.x() > 0.0 ? -between.x() : between.x();
+  const double from_face_m = 0.5 * near.extent.length_m + behind_m;
+  if (from_face_m < 0.5 * near.extent.length_m || from_face_m > kLongestVehicle_m) {
+    return std::nullopt;
+  }
+  if (from_face_m - near.extent.length_m > kConvoyGap_s * speed_mps) return std::nullopt;
+  return from_face_m;
+}
+
 }  // namespace
 
 bool IsInAnothersBox(const TrackTable& table, std::size_t i, const Eigen::Vector2d& p_O) {
@@ -210,28 +243,31 @@ void OneVehicle::EndDuplicates(double dt_s, TrackTable& table) const {
 }
 
 void OneVehicle::JoinParts(double dt_s, TrackTable& table) const {
-  const bool has_lorry = std::ranges::any_of(
-      table.tracks(), [](const LocalTrack& track) { return IsLong(track.object_class); });
   for (std::size_t i = 0; i < table.size(); ++i) {
     const auto [track, evidence] = table[i];
     if (evidence.is_ended) continue;
     std::size_t whole = table.size();
     double needed_m = 0.0;
-    if (has_lorry) {
-      places_.ForEachNear(track.state_O.mean.head<2>(), kPartReach_m, [&](std::size_t j) {
-        if (j >= whole) return;  // The oldest counts.
-        const auto length_m = LengthWithPart(table, i, j);
-        if (!length_m) return;
-        whole = j;
-        needed_m = *length_m;
-      });
-    }
+    bool is_convoy = false;
+    places_.ForEachNear(track.state_O.mean.head<2>(), kPartReach_m, [&](std::size_t j) {
+      if (j >= whole) return;  // The oldest counts.
+      const auto part = LengthWithPart(table, i, j);
+      const auto length_m = part ? part : LengthAsConvoy(table, i, j);
+      if (!length_m) return;
+      whole = j;
+      needed_m = *length_m;
+      is_convoy = !part;
+    });
     if (whole == table.size()) {
       evidence.part_s = 0.0;
+      evidence.convoy_s = std::max(evidence.convoy_s - dt_s, 0.0);
       continue;
     }
-    evidence.part_s += dt_s;
-    if (evidence.part_s < (track.is_confirmed ? kPartHold_s : kTentativeHold_s)) continue;
+    (is_convoy ? evidence.convoy_s : evidence.part_s) += dt_s;
+    if (is_convoy) evidence.part_s = 0.0;
+    const double hold_s = is_convoy ? kConvoyHold_s
+                          : track.is_confirmed ? kPartHold_s : kTentativeHold_s;
+    if ((is_convoy ? evidence.convoy_s : evidence.part_s) < hold_s) continue;
     evidence.is_ended = true;
     const auto [lorry, its_evidence] = table[whole];
     its_evidence.filter.Lengthen(needed_m, kPartSigma_m);

@@ -52,6 +52,7 @@ struct TrackEvidence {
   // Part of another track's vehicle: OneVehicle.
   double overlap_s = 0.0;  ///< How long its senior has been in the same place.
   double part_s = 0.0;     ///< How long it could be the far end of a lorry or bus.
+  double convoy_s = 0.0;   ///< How long it has followed closer than anybody drives.
   int borrowed = 0;        ///< Hits out of its senior's box, own ones taken off twice.
 };
 
