@@ -26,6 +26,7 @@ constexpr double kMostGuess_m = 2.5;
 // What no picture shows although it should is a multipath ghost, or a vehicle that the camera
 // is blind for. Ghosts come and go within tenths of a second.
 constexpr int kMissingPictures = 2;
+constexpr int kEmptyLooks = 6;
 constexpr double kLastingImage_s = 1.0;
 constexpr int kLastingHits = 15;
 // Boxes on the ground name a vehicle at a place; one alone may be false.
@@ -59,7 +60,7 @@ void ListingRules::Judge(Timestamp now, LocalTrack& track, TrackEvidence& eviden
     evidence.was_listed = true;
   } else if (track.is_confirmed &&
              (track.existence < config_.keep_existence || !IsWorthListing(track, evidence) ||
-              IsTransparent(track, evidence) || IsOverdue(track, evidence, now))) {
+              IsTransparent(track, evidence) || evidence.empty_looks >= kEmptyLooks || IsOverdue(track, evidence, now))) {
     track.is_confirmed = false;
   }
   const bool was_believed = track.support.hits() >= config_.confirm_hits;
@@ -86,6 +87,7 @@ bool ListingRules::IsConvincing(const LocalTrack& track, const TrackEvidence& ev
                                            : std::min(kMostGuess_m, config_.max_position_sigma_m);
   if (LargestSigma(evidence.filter.position_covariance()) > most_m) return false;
   if (track.object_hits() >= kSureBoxes) return true;
+  if (evidence.empty_looks >= kEmptyLooks) return false;
   if (MayBeOwnBody(track, evidence) || IsTransparent(track, evidence)) return false;
   if (track.camera_hits() > 0) return track.radar_hits() > 0 || !evidence.is_far;
   const bool is_in_sight = evidence.clear_hits >= kClearHits;

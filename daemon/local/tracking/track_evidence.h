@@ -36,6 +36,7 @@ struct TrackEvidence {
   int clutter_cell = -1;  ///< Of the cluster that started it, in ClutterMap.
 
   // Camera: Tracker::UpdateCamera.
+  int empty_looks = 0;   ///< Scans in a row of a radar that saw nothing there.
   int not_pictured = 0;  ///< Pictures that ought to have shown it.
   bool is_far = false;   ///< Beyond camera_birth_range_m at its last box.
 

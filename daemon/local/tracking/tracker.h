@@ -119,6 +119,7 @@ class Tracker {
   void Conclude();
 
   void CompareClusters(const RadarLook& look, std::span<const RadarMeasurement> measurements);
+  void CountEmptyLooks(const RadarLook& look);
   void TakeCluster(const RadarLook& look, SensorKey sensor, std::size_t i);
   void NoteReflection(const RadarLook& look, std::size_t i, const Eigen::Vector2d& p_O);
   void StartFromRadar(const RadarLook& look, SensorKey sensor,

@@ -14,6 +14,9 @@ namespace {
 constexpr double kClearLook = 0.4;
 // For so long second echoes alone keep a vehicle.
 constexpr double kEchoAlone_s = 1.0;
+constexpr double kEmptyBeyond_m = 2.0;
+constexpr double kEmptyAside_m = 0.5;
+constexpr int kMostEmptyLooks = 12;
 constexpr double kTravelled_m = 3.0;
 
 }  // namespace
@@ -29,6 +32,7 @@ void Tracker::UpdateRadar(int radar, const EgoState& ego,
                      association_.candidates());
   CompareClusters(look, measurements);
   association_.Solve(measurements.size(), Proof::kRepeated, table_);
+  CountEmptyLooks(look);
   owners_.Find(look, measurements, table_, association_);
   for (std::size_t i = 0; i < table_.size(); ++i) {
     if (association_.GivenTo(i)) TakeCluster(look, sensor, i);
@@ -58,6 +62,31 @@ void Tracker::CompareClusters(const RadarLook& look,
         association_.Compare(table_, i, j, look, measurements[j]);
       }
     });
+  }
+}
+
+// What only pictures have seen, where this radar sees clearly: does anything at all reflect there?
+void Tracker::CountEmptyLooks(const RadarLook& look) {
+  // A sensor that tracks by itself reports what it has confirmed.
+  if (look.radar.output == RadarOutput::kObjects) return;
+  const Candidates& candidates = association_.candidates();
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    const auto [track, evidence] = table_[i];
+    if (track.radar_hits() + track.object_hits() > 0) continue;
+    if (association_.expected().detection(i) < kClearLook) continue;
+    const Eigen::Vector2d p_O = evidence.filter.position_O();
+    const double sigma_m = LargestSigma(evidence.filter.position_covariance());
+    const double along_m = 3.0 * sigma_m + track.extent.length_m + kEmptyBeyond_m;
+    const Eigen::Vector2d line = p_O - look.origin_O();
+    const double range_m = line.norm();
+    const double across_m = 0.5 * track.extent.length_m + kEmptyAside_m + 3.0 * look.radar.azimuth_sigma_rad * range_m;
+    const Eigen::Vector2d u = line / std::max(range_m, 0.1);
+    bool is_empty = true;
+    candidates.ForEachNear(p_O, along_m + across_m, [&](std::size_t j) {
+      const Eigen::Vector2d off = candidates[j].p_O - p_O;
+      if (std::abs(off.dot(u)) < along_m && std::abs(u.x() * off.y() - u.y() * off.x()) < across_m) is_empty = false;
+    });
+    evidence.empty_looks = is_empty ? std::min(evidence.empty_looks + 1, kMostEmptyLooks) : std::max(evidence.empty_looks - 2, 0);
   }
 }
 
