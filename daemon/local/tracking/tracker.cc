@@ -2,9 +2,19 @@
 #include "daemon/local/tracking/tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace v2vouch {
+namespace {
+
+// What so many pictures have named is a vehicle. Where a radar still sees it, pictures without it
+// are a detector's bad second: each counts for this share of one.
+constexpr int kKnownByPictures = 15;
+constexpr double kStillReflects_s = 0.2;
+constexpr double kSpellShare = 0.25;
+
+}  // namespace
 
 Tracker::Tracker(const TrackerConfig& config, const VehicleConfig& vehicle)
     : config_(config),
@@ -29,9 +39,16 @@ void Tracker::Begin(SensorKey sensor, const DetectabilityOf& detectability) {
 
 void Tracker::Prove(std::size_t i) {
   const auto [track, evidence] = table_[i];
-  evidence.proven = association_.GivenTo(i)
-                        ? std::max(evidence.proven, track.existence)
-                        : ExistenceAfterMiss(evidence.proven, association_.expected().missing(i));
+  if (association_.GivenTo(i)) {
+    evidence.proven = std::max(evidence.proven, track.existence);
+    return;
+  }
+  double missing = association_.expected().missing(i);
+  const bool still_reflects = ToSeconds(table_.now() - evidence.reflected) < kStillReflects_s;
+  if (still_reflects && track.camera_hits() >= kKnownByPictures) {
+    missing = 1.0 - std::pow(1.0 - missing, kSpellShare);
+  }
+  evidence.proven = ExistenceAfterMiss(evidence.proven, missing);
 }
 
 // The end of every frame: shows the new states, confirms, ends and puts in order.

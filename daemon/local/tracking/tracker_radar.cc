@@ -17,6 +17,8 @@ constexpr double kEchoAlone_s = 1.0;
 constexpr double kEmptyBeyond_m = 2.0;
 constexpr double kEmptyAside_m = 0.5;
 constexpr int kMostEmptyLooks = 12;
+// A vehicle that drove up and stopped has shown so many clusters of its own Doppler, so far apart.
+constexpr int kDrivenHits = 10;
 constexpr double kTravelled_m = 3.0;
 
 }  // namespace
@@ -54,7 +56,7 @@ void Tracker::CompareClusters(const RadarLook& look,
     const bool is_guess = !evidence.has_range;
     if (is_guess && evidence.glances.size() < Glances::kMost) continue;
     const bool takes_standing = track.camera_hits() + track.object_hits() > 0 ||
-                                (evidence.moving_hits >= config_.confirm_hits && evidence.has_travelled);
+                                (evidence.moving_hits >= kDrivenHits && evidence.has_travelled);
     const bool is_echo_alone = ToSeconds(table_.now() - evidence.borne_out) > kEchoAlone_s;
     candidates.ForEachNear(evidence.filter.position_O(), reach_m, [&](std::size_t j) {
       if (candidates[j].is_echo && is_echo_alone) return;
