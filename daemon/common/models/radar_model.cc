@@ -184,10 +184,8 @@ void AddReference(const Eigen::Vector2d& along, const Bearing& b, const Extent& 
                   double range_m, Eigen::Matrix3d& R, Linearized& out) {
   const double cosine = along.x() * b.c.value + along.y() * b.s.value;
   const double sine = along.x() * b.s.value - along.y() * b.c.value;
-  const double radial_m =
-      0.5 * std::hypot(cosine * extent.length_m, sine * extent.width_m);
-  const double across_m =
-      0.5 * std::hypot(sine * extent.length_m, cosine * extent.width_m);
+  const double radial_m = 0.5 * std::hypot(cosine * extent.length_m, sine * extent.width_m);
+  const double across_m = 0.5 * std::hypot(sine * extent.length_m, cosine * extent.width_m);
   R(0, 0) += std::pow(kObjectWhite * radial_m, 2);
   R(1, 1) += std::pow(kObjectWhite * across_m / range_m, 2);
   out.O.setZero(3, 2);
@@ -259,9 +257,8 @@ std::optional<Linearized> LinearizeRadar(const StateVector& x, const Extent& ext
   const D vx = speed * bearing.c - yaw_rate * mean.oy - D(v_R_O.x());
   const D vy = speed * bearing.s + yaw_rate * mean.ox - D(v_R_O.y());
   const D range_rate = (qx * vx + qy * vy) / range;
-  const auto near_end = measurement.is_object
-                            ? std::nullopt
-                            : NearEnd(px, py, bearing.c, bearing.s, extent);
+  const auto near_end =
+      measurement.is_object ? std::nullopt : NearEnd(px, py, bearing.c, bearing.s, extent);
   Linearized out =
       Innovate({range, atan2(qy, qx), range_rate, near_end}, X_OR.yaw_rad(), radar, measurement);
   Eigen::Matrix3d R = measurement.covariance;

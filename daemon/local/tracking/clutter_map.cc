@@ -39,7 +39,8 @@ int ClutterMap::CellOf(const RadarConfig& radar, const RadarMeasurement& z) {
 
 void ClutterMap::Age(int radar) {
   constexpr auto kStays = static_cast<float>(1.0 - 1.0 / kMemory);
-  const auto of_radar = std::span(counts_).subspan(static_cast<std::size_t>(radar) * kCells, kCells);
+  const auto of_radar =
+      std::span(counts_).subspan(static_cast<std::size_t>(radar) * kCells, kCells);
   for (float& count : of_radar) count *= kStays;
 }
 

@@ -60,7 +60,8 @@ void ListingRules::Judge(Timestamp now, LocalTrack& track, TrackEvidence& eviden
     evidence.was_listed = true;
   } else if (track.is_confirmed &&
              (track.existence < config_.keep_existence || !IsWorthListing(track, evidence) ||
-              IsTransparent(track, evidence) || evidence.empty_looks >= kEmptyLooks || IsOverdue(track, evidence, now))) {
+              IsTransparent(track, evidence) || evidence.empty_looks >= kEmptyLooks ||
+              IsOverdue(track, evidence, now))) {
     track.is_confirmed = false;
   }
   const bool was_believed = track.support.hits() >= config_.confirm_hits;

@@ -265,8 +265,9 @@ void OneVehicle::JoinParts(double dt_s, TrackTable& table) const {
     }
     (is_convoy ? evidence.convoy_s : evidence.part_s) += dt_s;
     if (is_convoy) evidence.part_s = 0.0;
-    const double hold_s = is_convoy ? kConvoyHold_s
-                          : track.is_confirmed ? kPartHold_s : kTentativeHold_s;
+    const double hold_s = is_convoy            ? kConvoyHold_s
+                          : track.is_confirmed ? kPartHold_s
+                                               : kTentativeHold_s;
     if ((is_convoy ? evidence.convoy_s : evidence.part_s) < hold_s) continue;
     evidence.is_ended = true;
     const auto [lorry, its_evidence] = table[whole];

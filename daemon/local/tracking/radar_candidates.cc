@@ -22,6 +22,7 @@ constexpr double kReachMargin_m = 1.0;
 constexpr double kEchoRange_m = 2.0;
 constexpr double kEchoSigmas = 3.0;
 constexpr double kEchoBearing_rad = 0.01;
+constexpr double kFaceHalf_m = 1.2;
 constexpr double kEchoRate_mps = 0.6;
 constexpr double kEchoWeaker_db = 15.0;
 
@@ -48,7 +49,7 @@ void DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement> measure
     if (!candidates[j].may_start || echo.outline_count == 0) continue;
     for (const RadarMeasurement& z : measurements) {
       if (z.outline_count == 0 || std::abs(echo.range_m - 2.0 * z.range_m) > kEchoRange_m) continue;
-      if (AsideOf(z, echo.azimuth_rad) > bearing_rad) continue;
+      if (AsideOf(z, echo.azimuth_rad) > bearing_rad + kFaceHalf_m / z.range_m) continue;
       if (std::abs(echo.range_rate_mps - 2.0 * z.range_rate_mps) > kEchoRate_mps) continue;
       if (z.outline[0].strength_db < echo.outline[0].strength_db + kEchoWeaker_db) continue;
       candidates[j].may_start = false;
@@ -61,8 +62,8 @@ void DenyEchoes(const RadarLook& look, std::span<const RadarMeasurement> measure
 }  // namespace
 
 void AddRadarCandidates(const RadarLook& look, std::span<const RadarMeasurement> measurements,
-                        double birth_per_m2_s, const TrackTable& table, const ClutterMap& clutter_map,
-                        Candidates& candidates) {
+                        double birth_per_m2_s, const TrackTable& table,
+                        const ClutterMap& clutter_map, Candidates& candidates) {
   const RadarConfig& radar = look.radar;
   const double cells = (radar.max_range_m - radar.min_range_m) * 2.0 * radar.half_fov_rad;
   const double births =

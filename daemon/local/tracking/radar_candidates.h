@@ -20,8 +20,8 @@ namespace v2vouch {
 /// @param table whose CrowdOf the moving clusters is clutter, where it is more than the radar
 /// promises: spread in range and azimuth as this scan shows.
 void AddRadarCandidates(const RadarLook& look, std::span<const RadarMeasurement> measurements,
-                        double birth_per_m2_s, const TrackTable& table, const ClutterMap& clutter_map,
-                        Candidates& candidates);
+                        double birth_per_m2_s, const TrackTable& table,
+                        const ClutterMap& clutter_map, Candidates& candidates);
 
 /// Leaves the nearest of the measurements named, in their order. @return whether any had to go.
 bool KeepNearest(std::span<const RadarMeasurement> measurements, std::size_t most,

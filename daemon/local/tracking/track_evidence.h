@@ -23,16 +23,16 @@ struct TrackEvidence {
   double proven = 0.0;      ///< Existence by pictures, boxes and motion alone.
   bool is_certain = false;  ///< Started by a bench's pose or box: however unlikely, it may stay.
   bool was_listed = false;
-  bool is_ended = false;    ///< Leaves the table at the end of this step.
+  bool is_ended = false;                ///< Leaves the table at the end of this step.
   std::array<double, 8> class_votes{};  ///< Scores by ObjectClass, older ones less.
 
   // Radar: Tracker::UpdateRadar.
-  int clear_hits = 0;                                      ///< From where the radar can see.
-  int moving_hits = 0;                                     ///< With a Doppler of their own.
-  Eigen::Vector2d reflection_O = Eigen::Vector2d::Zero();  ///< Last cluster it was given,
-  Timestamp reflected{};                                   ///< and when.
+  int clear_hits = 0;                                        ///< From where the radar can see.
+  int moving_hits = 0;                                       ///< With a Doppler of their own.
+  Eigen::Vector2d reflection_O = Eigen::Vector2d::Zero();    ///< Last cluster it was given,
+  Timestamp reflected{};                                     ///< and when.
   Eigen::Vector2d first_moving_O = Eigen::Vector2d::Zero();  ///< Where it first moved.
-  bool has_travelled = false;  ///< Moving hits lie apart.
+  bool has_travelled = false;                                ///< Moving hits lie apart.
   int clutter_cell = -1;  ///< Of the cluster that started it, in ClutterMap.
 
   // Camera: Tracker::UpdateCamera.

@@ -81,14 +81,17 @@ void Tracker::CountEmptyLooks(const RadarLook& look) {
     const double along_m = 3.0 * sigma_m + track.extent.length_m + kEmptyBeyond_m;
     const Eigen::Vector2d line = p_O - look.origin_O();
     const double range_m = line.norm();
-    const double across_m = 0.5 * track.extent.length_m + kEmptyAside_m + 3.0 * look.radar.azimuth_sigma_rad * range_m;
+    const double across_m =
+        0.5 * track.extent.length_m + kEmptyAside_m + 3.0 * look.radar.azimuth_sigma_rad * range_m;
     const Eigen::Vector2d u = line / std::max(range_m, 0.1);
     bool is_empty = true;
     candidates.ForEachNear(p_O, along_m + across_m, [&](std::size_t j) {
       const Eigen::Vector2d off = candidates[j].p_O - p_O;
-      if (std::abs(off.dot(u)) < along_m && std::abs(u.x() * off.y() - u.y() * off.x()) < across_m) is_empty = false;
+      if (std::abs(off.dot(u)) < along_m && std::abs(u.x() * off.y() - u.y() * off.x()) < across_m)
+        is_empty = false;
     });
-    evidence.empty_looks = is_empty ? std::min(evidence.empty_looks + 1, kMostEmptyLooks) : std::max(evidence.empty_looks - 2, 0);
+    evidence.empty_looks = is_empty ? std::min(evidence.empty_looks + 1, kMostEmptyLooks)
+                                    : std::max(evidence.empty_looks - 2, 0);
   }
 }
 
