@@ -8,7 +8,9 @@ namespace v2vouch {
 namespace {
 
 // Scans after which what was counted has faded to a third.
-constexpr double kMemory = 100.0;
+constexpr double kMemory = 200.0;
+// The first scans count as so many.
+constexpr double kLeastScans = 20.0;
 // So many clusters in a memory's time are a vehicle's own false starts.
 constexpr double kFree = 3.0;
 // Range rates are spread up to this on both sides.
@@ -42,6 +44,8 @@ void ClutterMap::Age(int radar) {
   const auto of_radar =
       std::span(counts_).subspan(static_cast<std::size_t>(radar) * kCells, kCells);
   for (float& count : of_radar) count *= kStays;
+  float& scans = scans_[static_cast<std::size_t>(radar)];
+  scans = kStays * scans + 1.0F;
 }
 
 void ClutterMap::Count(int cell, int clusters) {
@@ -57,7 +61,8 @@ double ClutterMap::DensityAt(const RadarConfig& radar, const RadarMeasurement& z
       WidthOf(kRangeEdges_m, cell / (kAzimuths * kRates), radar.min_range_m, radar.max_range_m) *
       (2.0 * radar.half_fov_rad / kAzimuths) *
       WidthOf(kRateEdges_mps, cell % kRates, -kMostRate_mps, kMostRate_mps);
-  return counted / (kMemory * volume);
+  const double scans = std::max<double>(scans_[index / kCells], kLeastScans);
+  return counted / (scans * volume);
 }
 
 }  // namespace v2vouch

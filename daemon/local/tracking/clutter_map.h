@@ -14,19 +14,19 @@ namespace v2vouch {
 /// multipath shows for a moment, which no data sheet promises. It is learnt from tracks that came
 /// to nothing, so that a vehicle which is being confirmed does not speak against itself. Cells of
 /// range, azimuth and ground range rate, relative to the antenna, as weather is. With n clusters of
-/// tracks that came to nothing, of which the first few do not count, in about kMemory scans, a cell
-/// of volume v [m rad m/s] has
+/// tracks that came to nothing, of which the first few do not count, in the last s scans (both
+/// fade alike), a cell of volume v [m rad m/s] has
 ///
-///     density = max(n - kFree, 0) / (kMemory v)
+///     density = max(n - kFree, 0) / (s v)
 ///
 /// Copyable; allocates when it is made only. Cell -1 is none.
 class ClutterMap {
  public:
-  explicit ClutterMap(std::size_t radars) : counts_(radars * kCells, 0.0F) {}
+  explicit ClutterMap(std::size_t radars) : counts_(radars * kCells), scans_(radars) {}
 
   /// The cell that a cluster of this radar lies in.
   [[nodiscard]] static int CellOf(const RadarConfig& radar, const RadarMeasurement& z);
-  /// A scan of the radar: what came to nothing long ago fades.
+  /// A scan of the radar: what came to nothing long ago fades, with the scans that it was of.
   void Age(int radar);
   /// A track that started in this cell has come to nothing after so many clusters.
   void Count(int cell, int clusters);
@@ -42,6 +42,7 @@ class ClutterMap {
   static constexpr std::size_t kCells = kRanges * kAzimuths * kRates;
 
   std::vector<float> counts_;  // Clusters, by radar and cell.
+  std::vector<float> scans_;   // That they are of, by radar.
 };
 
 }  // namespace v2vouch

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 
+#include "daemon/common/models/radar_outline.h"
 #include "tests/daemon/common/models/random_scene.h"
 
 namespace v2vouch {
@@ -125,13 +127,38 @@ TEST(LinearizeRadar, LeadCarIsMeasuredAtItsRearBumper) {
   RadarMeasurement z = AnyRadarMeasurement();
   z.range_m = 40.0;
   z.range_rate_mps = 20.0;
-  for (const bool is_object : {false, true}) {
-    z.is_object = is_object;
-    const auto out = LinearizeRadar(x, Extent{4.5, 1.8, 0, 0}, EgoState{}, radar, z);
-    ASSERT_TRUE(out);
-    EXPECT_NEAR(out->y[0], 0.0, 0.06);
-    EXPECT_NEAR(out->y[1], 0.0, 1e-9);
-    EXPECT_NEAR(out->E(0, 0), -0.5, 0.05);  // A longer car's centre is farther away.
+  const auto out = LinearizeRadar(x, Extent{4.5, 1.8, 0, 0}, EgoState{}, radar, z);
+  ASSERT_TRUE(out);
+  EXPECT_NEAR(out->y[0], 0.0, 0.06);
+  EXPECT_NEAR(out->y[1], 0.0, 1e-9);
+  EXPECT_NEAR(out->E(0, 0), -0.5, 0.05);  // A longer car's centre is farther away.
+}
+
+TEST(LinearizeRadar, AnObjectsPlaceMayBeAnyPointOfTheVehicle) {
+  // From a bumper over the centre to the far corner: within what lasting offset and noise explain.
+  StateVector x;
+  x << 42.25, 0.0, 0.0, 20.0, 0.0, 0.0;
+  const Extent extent{4.5, 1.8, 0, 0};
+  RadarMeasurement z = AnyRadarMeasurement();
+  z.is_object = true;
+  z.range_rate_mps = 20.0;
+  for (const double along : {-1.0, 0.0, 1.0}) {
+    for (const double across : {-1.0, 0.0, 1.0}) {
+      const Eigen::Vector2d p(x[0] + along * 2.25, across * 0.9);
+      z.range_m = p.norm();
+      z.azimuth_rad = std::atan2(p.y(), p.x());
+      const auto out = LinearizeRadar(x, extent, EgoState{}, RadarConfig{}, z);
+      ASSERT_TRUE(out);
+      ASSERT_EQ(out->O.rows(), 3);
+      const Eigen::Vector2d lasting(out->O(0, 0) * kDepthOffsetSigma_m,
+                                    out->O(1, 1) * kAsideOffsetSigma);
+      const Eigen::Vector2d sigma =
+          (lasting.array().square() + Eigen::Array2d(out->R(0, 0), out->R(1, 1))).sqrt();
+      EXPECT_LT(std::abs(out->y[0]), 2.5 * sigma[0]);
+      EXPECT_LT(std::abs(out->y[1]), 2.5 * sigma[1]);
+      EXPECT_LT(sigma[0], 4.5);
+      EXPECT_LT(sigma[1] * 42.0, 1.8);
+    }
   }
 }
 
