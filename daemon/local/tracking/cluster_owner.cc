@@ -112,7 +112,10 @@ bool IsPartOf(TrackTable::ConstRow row, const RadarLook& look, const RadarMeasur
     const Extent& extent = track.extent;
     // What stands near a standing vehicle need not belong to it.
     const double reach = z.is_static ? 0.5 * extent.length_m : ReachAlong(track) + blur_m;
-    const double aside = z.is_static ? kStandingMargin_m : kBoxMargin_m + blur_m;
+    // A sensor that tracks by itself has found out which returns are one vehicle.
+    const double aside = z.is_static   ? kStandingMargin_m
+                         : z.is_object ? 0.0
+                                       : kBoxMargin_m + blur_m;
     if (std::abs(inside.x()) > reach || std::abs(inside.y()) > 0.5 * extent.width_m + aside) {
       return false;
     }
@@ -218,7 +221,7 @@ void ClusterOwners::Join(const RadarLook& look, std::span<const RadarMeasurement
     if (const auto given = association.GivenTo(i)) joined_[i] = measurements[*given];
   }
   for (std::size_t j = 0; j < measurements.size(); ++j) {
-    if (owner_[j] < 0 || owner_[j] == kAssigned) continue;
+    if (owner_[j] < 0 || owner_[j] == kAssigned || measurements[j].is_object) continue;
     const auto owner = static_cast<std::size_t>(owner_[j]);
     if (!association.GivenTo(owner)) continue;
     const Eigen::Vector2d velocity_O = table[owner].evidence.filter.velocity_O();
