@@ -88,7 +88,9 @@ class Assessor {
   }
 
   void Ahead() {
-    const Conflict conflict = AssessConflict(*fan_, body_target_, config_);
+    const bool is_aside = placement_.zone == Zone::kAheadAside;
+    const Conflict conflict = AssessConflict(
+        *fan_, is_aside ? InItsLane(plan_, body_target_, placement_) : body_target_, config_);
     const double closing = std::max(
         0.0, plan_.speed_mps - body_target_.mean[kSpeed] * std::cos(placement_.turned_rad));
     // A lead that brakes has to be met by more than the closing speed alone.
@@ -119,7 +121,8 @@ class Assessor {
         figures.urgent_before_s = std::max(figures.urgent_before_s, contact_s);
       }
     }
-    Judge(Kind::kFcw, Side::kAhead, conflict, figures);
+    const bool may_brake = !is_aside || !IsAlongside(body_, body_target_, placement_);
+    Judge(Kind::kFcw, Side::kAhead, conflict, figures, may_brake ? Level::kUrgent : Level::kAdvise);
   }
 
   void HeadOn() {

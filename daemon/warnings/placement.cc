@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kSameDirection_rad = 0.786;  // 45 degrees
 constexpr double kOncoming_rad = 2.356;       // 135 degrees
+// Comes nearer across the path: a change of lanes takes 1 to 1.5 m/s.
+constexpr double kLeavesLane_mps = 0.8;
 constexpr double kEye_m = 1.5;                // Driver's eye ahead of the rear axle, about.
 
 }  // namespace
@@ -38,6 +40,21 @@ bool IsInEgo(const BodyTarget& target, const EgoBody& body) {
   const StateVector& x = target.mean;
   return Touch({{body.centre_x_m, 0.0}, {1.0, 0.0}}, own,
                {x.head<2>(), {std::cos(x[kYaw]), std::sin(x[kYaw])}}, target.size);
+}
+
+BodyTarget InItsLane(const EgoPlan& plan, const BodyTarget& target, const Placement& placement) {
+  const double speed_mps = target.mean[kSpeed];
+  const double away_mps = std::abs(speed_mps) * std::sin(placement.turned_rad);
+  const double side = placement.place.left_m > 0.0 ? 1.0 : -1.0;
+  if (-side * away_mps > kLeavesLane_mps) return target;
+  BodyTarget kept = target;
+  kept.mean[kYaw] = WrapAngle(target.mean[kYaw] - placement.turned_rad);
+  kept.mean[kYawRate] = plan.curvature_per_m * speed_mps;
+  return kept;
+}
+
+bool IsAlongside(const EgoBody& body, const BodyTarget& target, const Placement& placement) {
+  return placement.place.along_m - target.size.length_m < body.centre_x_m + 0.5 * body.length_m;
 }
 
 Placement Classify(const EgoPlan& plan, const EgoBody& body, const BodyTarget& target,
