@@ -21,6 +21,7 @@ constexpr int kDepth = ExtendedState::kDepth;
 constexpr int kAside = ExtendedState::kAside;
 constexpr int kOthers = ExtendedState::kSize - kStateSize;
 // How long the offsets last: scatterers change with the aspect.
+constexpr double kUsualLength_m = 5.0;
 constexpr double kDepthDecay_s = 3.0;
 constexpr double kAsideDecay_s = 5.0;
 
@@ -78,10 +79,23 @@ void AssumeOffsets(ExtendedState& state) {
   state.covariance(kAside, kAside) = kAsideOffsetSigma * kAsideOffsetSigma;
 }
 
+namespace {
+
+// A long vehicle turns slowly: its yaw is driven the less the longer it is.
+MotionNoise NoiseOf(double length_m, const MotionNoise& noise) {
+  MotionNoise out = noise;
+  const double ratio = kUsualLength_m / std::max(length_m, kUsualLength_m);
+  out.yaw_accel_psd *= ratio * ratio;
+  out.slip_psd *= ratio * ratio;
+  return out;
+}
+
+}  // namespace
+
 void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise) {
   KinematicState motion = state.kinematic();
   StateMatrix F;
-  PredictCtra(motion, dt_s, noise, &F);
+  PredictCtra(motion, dt_s, NoiseOf(state.mean[ExtendedState::kLength], noise), &F);
   const Eigen::Matrix<double, kStateSize, kOthers> cross =
       F * state.covariance.topRightCorner<kStateSize, kOthers>();
   state.mean.head<kStateSize>() = motion.mean;
