@@ -12,7 +12,7 @@ constexpr double kSameDirection_rad = 0.786;  // 45 degrees
 constexpr double kOncoming_rad = 2.356;       // 135 degrees
 // Comes nearer across the path: a change of lanes takes 1 to 1.5 m/s.
 constexpr double kLeavesLane_mps = 0.8;
-constexpr double kEye_m = 1.5;                // Driver's eye ahead of the rear axle, about.
+constexpr double kEye_m = 1.5;  // Driver's eye ahead of the rear axle, about.
 
 }  // namespace
 

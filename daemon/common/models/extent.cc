@@ -22,6 +22,7 @@ constexpr int kAside = ExtendedState::kAside;
 constexpr int kOthers = ExtendedState::kSize - kStateSize;
 // How long the offsets last: scatterers change with the aspect.
 constexpr double kUsualLength_m = 5.0;
+constexpr double kLongSpeed_mps = 10.0;
 constexpr double kDepthDecay_s = 3.0;
 constexpr double kAsideDecay_s = 5.0;
 
@@ -81,12 +82,16 @@ void AssumeOffsets(ExtendedState& state) {
 
 namespace {
 
-// A long vehicle turns slowly: its yaw is driven the less the longer it is.
-MotionNoise NoiseOf(double length_m, const MotionNoise& noise) {
+// The longer a vehicle is the less lateral acceleration it drives with: at speed, not where it
+// turns off at a walk.
+MotionNoise NoiseOf(double length_m, double speed_mps, const MotionNoise& noise) {
   MotionNoise out = noise;
+  const double at_speed =
+      speed_mps * speed_mps / (speed_mps * speed_mps + kLongSpeed_mps * kLongSpeed_mps);
   const double ratio = kUsualLength_m / std::max(length_m, kUsualLength_m);
-  out.yaw_accel_psd *= ratio * ratio;
-  out.slip_psd *= ratio * ratio;
+  const double share = 1.0 - (1.0 - ratio) * at_speed;
+  out.yaw_accel_psd *= share * share;
+  out.slip_psd *= share * share;
   return out;
 }
 
@@ -95,7 +100,8 @@ MotionNoise NoiseOf(double length_m, const MotionNoise& noise) {
 void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise) {
   KinematicState motion = state.kinematic();
   StateMatrix F;
-  PredictCtra(motion, dt_s, NoiseOf(state.mean[ExtendedState::kLength], noise), &F);
+  PredictCtra(motion, dt_s, NoiseOf(state.mean[ExtendedState::kLength], state.mean[kSpeed], noise),
+              &F);
   const Eigen::Matrix<double, kStateSize, kOthers> cross =
       F * state.covariance.topRightCorner<kStateSize, kOthers>();
   state.mean.head<kStateSize>() = motion.mean;

@@ -85,6 +85,33 @@ TEST(Assess, ParkedRowQueueAndParallelRoadSayNothing) {
   }
 }
 
+// A lorry in the next lane that we pass at 31 m/s: its heading and yaw rate are not known better.
+Target Lorry(double x, double yaw, double yaw_rate) {
+  Target lorry = Car(1, x, -3.7, yaw, 26.7);
+  lorry.extent.length_m = 12.0;
+  lorry.extent.width_m = 2.6;
+  lorry.state_O.mean[kYawRate] = yaw_rate;
+  return lorry;
+}
+
+Level LevelOf(const Target& target) {
+  const auto found = Assess(SceneOf(Driving(31.0), {target}), {}, {});
+  return found.empty() ? Level::kInfo : found.front().warning.level;
+}
+
+TEST(Assess, ALorryThatWePassKeepsItsLaneUntilItShowsOtherwise) {
+  for (const double x : {12.0, 16.0, 22.0, 30.0}) {
+    EXPECT_LT(LevelOf(Lorry(x, 0.0, 0.0)), Level::kWarn) << x;
+    EXPECT_LT(LevelOf(Lorry(x, 0.025, 0.06)), Level::kWarn) << x;
+    EXPECT_LT(LevelOf(Lorry(x, -0.06, 0.0)), Level::kWarn) << x;  // Moves away.
+  }
+  EXPECT_GE(LevelOf(Lorry(14.0, 0.05, 0.02)), Level::kWarn);  // 1.3 m/s across: comes over.
+}
+
+TEST(Assess, BrakingIsNotForWhatIsAlongside) {
+  EXPECT_LE(LevelOf(Lorry(5.0, 0.05, 0.1)), Level::kAdvise);
+}
+
 TEST(Assess, OncomingTrafficInItsLaneSaysNothing) {
   EXPECT_FALSE(Only(SceneOf(Driving(14.0), {Car(1, 60.0, 3.5, kPi, 14.0)})));
   // On a bend both follow.
