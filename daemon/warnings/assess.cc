@@ -89,8 +89,8 @@ class Assessor {
 
   void Ahead() {
     const bool is_aside = placement_.zone == Zone::kAheadAside;
-    const Conflict conflict = AssessConflict(
-        *fan_, is_aside ? InItsLane(plan_, body_target_, placement_) : body_target_, config_);
+    const Conflict conflict =
+        AssessConflict(*fan_, InItsLane(plan_, body_target_, placement_), config_);
     const double closing = std::max(
         0.0, plan_.speed_mps - body_target_.mean[kSpeed] * std::cos(placement_.turned_rad));
     // A lead that brakes has to be met by more than the closing speed alone.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/warnings/placement.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "daemon/common/base/angle.h"
@@ -12,6 +13,8 @@ constexpr double kSameDirection_rad = 0.786;  // 45 degrees
 constexpr double kOncoming_rad = 2.356;       // 135 degrees
 // Comes nearer across the path: a change of lanes takes 1 to 1.5 m/s.
 constexpr double kLeavesLane_mps = 0.8;
+// Within its lane it wanders: velocity across, and what that changes by in a second.
+constexpr double kWander_mps = 0.25;
 constexpr double kEye_m = 1.5;  // Driver's eye ahead of the rear axle, about.
 
 }  // namespace
@@ -44,12 +47,22 @@ bool IsInEgo(const BodyTarget& target, const EgoBody& body) {
 
 BodyTarget InItsLane(const EgoPlan& plan, const BodyTarget& target, const Placement& placement) {
   const double speed_mps = target.mean[kSpeed];
-  const double away_mps = std::abs(speed_mps) * std::sin(placement.turned_rad);
+  if (std::abs(speed_mps) < kTargetStands_mps) return target;
+  const double left_mps = std::abs(speed_mps) * std::sin(placement.turned_rad);
   const double side = placement.place.left_m > 0.0 ? 1.0 : -1.0;
-  if (-side * away_mps > kLeavesLane_mps) return target;
+  const bool leaves = placement.zone == Zone::kAheadAside ? -side * left_mps > kLeavesLane_mps
+                                                          : std::abs(left_mps) > kLeavesLane_mps;
+  if (leaves) return target;
   BodyTarget kept = target;
   kept.mean[kYaw] = WrapAngle(target.mean[kYaw] - placement.turned_rad);
   kept.mean[kYawRate] = plan.curvature_per_m * speed_mps;
+  const double wander_rad = kWander_mps / std::abs(speed_mps);
+  for (const int state : {kYaw, kYawRate}) {
+    const double before = std::sqrt(std::max(kept.covariance(state, state), 0.0));
+    const double share = before > wander_rad ? wander_rad / before : 1.0;
+    kept.covariance.row(state) *= share;
+    kept.covariance.col(state) *= share;
+  }
   return kept;
 }
 
