@@ -88,7 +88,6 @@ class Assessor {
   }
 
   void Ahead() {
-    const bool is_aside = placement_.zone == Zone::kAheadAside;
     const Conflict conflict =
         AssessConflict(*fan_, InItsLane(plan_, body_target_, placement_), config_);
     const double closing = std::max(
@@ -121,8 +120,9 @@ class Assessor {
         figures.urgent_before_s = std::max(figures.urgent_before_s, contact_s);
       }
     }
-    const bool may_brake = !is_aside || !IsAlongside(body_, body_target_, placement_);
-    Judge(Kind::kFcw, Side::kAhead, conflict, figures, may_brake ? Level::kUrgent : Level::kAdvise);
+    const bool is_alongside = IsAlongside(body_, body_target_, placement_);
+    Judge(Kind::kFcw, Side::kAhead, conflict, figures,
+          is_alongside ? Level::kAdvise : Level::kUrgent);
   }
 
   void HeadOn() {

@@ -67,7 +67,8 @@ BodyTarget InItsLane(const EgoPlan& plan, const BodyTarget& target, const Placem
 }
 
 bool IsAlongside(const EgoBody& body, const BodyTarget& target, const Placement& placement) {
-  return placement.place.along_m - target.size.length_m < body.centre_x_m + 0.5 * body.length_m;
+  return placement.zone == Zone::kAheadAside &&
+         placement.place.along_m - target.size.length_m < body.centre_x_m + 0.5 * body.length_m;
 }
 
 Placement Classify(const EgoPlan& plan, const EgoBody& body, const BodyTarget& target,

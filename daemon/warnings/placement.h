@@ -32,13 +32,14 @@ struct Placement {
   double half_across_m = 0.9;  ///< Of the target, across the path.
   double turned_rad = 0.0;     ///< Direction of motion against the path's, wrapped.
 };
+
 /// A vehicle that drives in or beside the path as one that keeps its lane: along the path, turning
 /// as it does, wandering by 0.25 m/s. One that comes nearer to the path, or leaves it, by more than
 /// 0.8 m/s across it is changing lanes and stays as it is; slower, the error of a heading at speed
 /// looks the same.
 BodyTarget InItsLane(const EgoPlan& plan, const BodyTarget& target, const Placement& placement);
 
-/// Part of it is beside the ego already: no braking of ours is for it.
+/// Beside the path, and part of it beside the ego already: no braking of ours is for it.
 bool IsAlongside(const EgoBody& body, const BodyTarget& target, const Placement& placement);
 
 Placement Classify(const EgoPlan& plan, const EgoBody& body, const BodyTarget& target,

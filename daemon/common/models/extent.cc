@@ -20,9 +20,10 @@ constexpr int kWidth = ExtendedState::kWidth;
 constexpr int kDepth = ExtendedState::kDepth;
 constexpr int kAside = ExtendedState::kAside;
 constexpr int kOthers = ExtendedState::kSize - kStateSize;
-// How long the offsets last: scatterers change with the aspect.
+// Longer vehicles turn more slowly, half of that from this speed on.
 constexpr double kUsualLength_m = 5.0;
 constexpr double kLongSpeed_mps = 10.0;
+// How long the offsets last: scatterers change with the aspect.
 constexpr double kDepthDecay_s = 3.0;
 constexpr double kAsideDecay_s = 5.0;
 

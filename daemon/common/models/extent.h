@@ -45,7 +45,8 @@ struct ExtendedState {
 /// Nothing is known of the lasting offsets of radar: their stationary distribution.
 void AssumeOffsets(ExtendedState& state);
 
-/// PredictCtra of the motion; the size keeps a little process noise, so that it never freezes.
+/// PredictCtra of the motion, where long vehicles turn more slowly at speed; the size keeps a
+/// little process noise, so that it never freezes.
 void PredictExtended(ExtendedState& state, double dt_s, const MotionNoise& noise);
 
 /// Joint Joseph update of motion and size. Length and width are kept within what drives on roads

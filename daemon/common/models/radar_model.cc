@@ -161,10 +161,8 @@ void AddScatter(const Mean& reflections, const Line& line, const RadarConfig& ra
   const Eigen::Array3d sensor(radar.range_sigma_m, radar.azimuth_sigma_rad,
                               radar.range_rate_sigma_mps);
   // What a sample mean of n reflections scatters by. The measurement's own covariance may hold
-  // the scatter already, as far as the sample shows it: the larger counts. A sensor that tracks
-  // by itself has averaged already.
-  Eigen::Matrix3d mean = measurement.is_object ? Eigen::Matrix3d(spread * kLastingSpread)
-                                               : Eigen::Matrix3d(spread / n);
+  // the scatter already, as far as the sample shows it: the larger counts.
+  Eigen::Matrix3d mean = spread / n;
   const Eigen::Array3d given = measurement.covariance.diagonal().array();
   mean.diagonal().array() += given.min(sensor.square() / n);
   R.diagonal().setZero();

@@ -26,11 +26,17 @@ constexpr double kMostGuess_m = 2.5;
 // What no picture shows although it should is a multipath ghost, or a vehicle that the camera
 // is blind for. Ghosts come and go within tenths of a second.
 constexpr int kMissingPictures = 2;
-constexpr int kEmptyLooks = 6;
 constexpr double kLastingImage_s = 1.0;
 constexpr int kLastingHits = 15;
+// Pictures of what so many looks of a clear radar saw nothing of are false.
+constexpr int kEmptyLooks = 6;
 // Boxes on the ground name a vehicle at a place; one alone may be false.
 constexpr int kSureBoxes = 2;
+
+// A sensor that sees clearly saw through it.
+bool IsNothing(const LocalTrack& track, const TrackEvidence& evidence) {
+  return IsTransparent(track, evidence) || evidence.empty_looks >= kEmptyLooks;
+}
 
 // Nothing is known to hide it, and no sensor has seen it for a while.
 bool IsOverdue(const LocalTrack& track, const TrackEvidence& evidence, Timestamp now) {
@@ -57,11 +63,10 @@ bool ListingRules::MayCoast(const LocalTrack& track, const TrackEvidence& eviden
 void ListingRules::Judge(Timestamp now, LocalTrack& track, TrackEvidence& evidence) const {
   if (!track.is_confirmed && IsConvincing(track, evidence)) {
     track.is_confirmed = true;
-    evidence.was_listed = true;
+    evidence.clutter_cell = -1;  // It has come to something.
   } else if (track.is_confirmed &&
              (track.existence < config_.keep_existence || !IsWorthListing(track, evidence) ||
-              IsTransparent(track, evidence) || evidence.empty_looks >= kEmptyLooks ||
-              IsOverdue(track, evidence, now))) {
+              IsNothing(track, evidence) || IsOverdue(track, evidence, now))) {
     track.is_confirmed = false;
   }
   const bool was_believed = track.support.hits() >= config_.confirm_hits;
@@ -88,8 +93,7 @@ bool ListingRules::IsConvincing(const LocalTrack& track, const TrackEvidence& ev
                                            : std::min(kMostGuess_m, config_.max_position_sigma_m);
   if (LargestSigma(evidence.filter.position_covariance()) > most_m) return false;
   if (track.object_hits() >= kSureBoxes) return true;
-  if (evidence.empty_looks >= kEmptyLooks) return false;
-  if (MayBeOwnBody(track, evidence) || IsTransparent(track, evidence)) return false;
+  if (MayBeOwnBody(track, evidence) || IsNothing(track, evidence)) return false;
   if (track.camera_hits() > 0) return track.radar_hits() > 0 || !evidence.is_far;
   const bool is_in_sight = evidence.clear_hits >= kClearHits;
   const bool is_missing = evidence.not_pictured >= kMissingPictures;

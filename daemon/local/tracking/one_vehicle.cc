@@ -147,30 +147,37 @@ bool IsWithin(const TrackTable& table, std::size_t i, std::size_t j) {
   return VelocityDifference(evidence, its_evidence) < kSameSpeed_mps + doubt_mps;
 }
 
+// How far behind the near face of vehicle j the last reflection of track i lies, on its axis, where
+// it is not older than `fresh_s` and nothing shows both as two; nullopt otherwise. What is seen of
+// a far end is its last reflection; its centre lies where a car's would.
+std::optional<double> BehindFace(const TrackTable& table, std::size_t i, std::size_t j,
+                                 double fresh_s) {
+  const auto [part, evidence] = table[i];
+  const auto [whole, its_evidence] = table[j];
+  if (i == j || its_evidence.is_ended || !its_evidence.filter.is_vehicle()) return std::nullopt;
+  if (!whole.is_confirmed || AreSeenAsTwo(part, whole)) return std::nullopt;
+  if (part.support.SharesFrame(whole.support, SensorKind::kCamera)) return std::nullopt;
+  if (ToSeconds(table.now() - evidence.reflected) > fresh_s) return std::nullopt;
+  const Eigen::Rotation2D<double> into(-whole.state_O.mean[kYaw]);
+  const Eigen::Vector2d between = into * (evidence.reflection_O - whole.state_O.mean.head<2>());
+  if (std::abs(between.y()) > kPartAside_m) return std::nullopt;
+  const Eigen::Vector2d sensor =
+      into * (its_evidence.filter.seen_from_O() - whole.state_O.mean.head<2>());
+  const double behind_m = sensor.x() > 0.0 ? -between.x() : between.x();
+  return 0.5 * whole.extent.length_m + behind_m;
+}
+
 // How long lorry j is if track i is its far end; nullopt where it cannot be.
 std::optional<double> LengthWithPart(const TrackTable& table, std::size_t i, std::size_t j) {
   const auto [part, evidence] = table[i];
   const auto [lorry, its_evidence] = table[j];
-  if (i == j || its_evidence.is_ended || !its_evidence.filter.is_vehicle()) return std::nullopt;
-  if (!IsLong(lorry.object_class) || !lorry.is_confirmed || !IsSenior(lorry, part)) {
-    return std::nullopt;
-  }
-  if (part.support.SharesFrame(lorry.support, SensorKind::kCamera)) return std::nullopt;
-  if (AreSeenAsTwo(part, lorry)) return std::nullopt;
-  const Eigen::Rotation2D<double> into(-lorry.state_O.mean[kYaw]);
-  // What is seen of it is its last reflection; its centre lies where a car's would.
-  if (ToSeconds(table.now() - evidence.reflected) > kFreshReflection_s) return std::nullopt;
-  const Eigen::Vector2d between = into * (evidence.reflection_O - lorry.state_O.mean.head<2>());
-  if (std::abs(between.y()) > kPartAside_m) return std::nullopt;
-  const Eigen::Vector2d sensor =
-      into * (its_evidence.filter.seen_from_O() - lorry.state_O.mean.head<2>());
-  const double behind_m = sensor.x() > 0.0 ? -between.x() : between.x();
-  const double reach_m =
-      std::min(kLongestVehicle_m, lorry.extent.length_m + 2.0 * lorry.extent.length_sigma_m);
-  const double from_face_m = 0.5 * lorry.extent.length_m + behind_m;
-  if (from_face_m < -kInside_m || from_face_m > reach_m) return std::nullopt;
+  if (!IsLong(lorry.object_class) || !IsSenior(lorry, part)) return std::nullopt;
   const double doubt_mps = evidence.filter.is_vehicle() ? 0.0 : kPointDoubt_mps;
   if (VelocityDifference(evidence, its_evidence) > kPartSpeed_mps + doubt_mps) return std::nullopt;
+  const auto from_face_m = BehindFace(table, i, j, kFreshReflection_s);
+  const double reach_m =
+      std::min(kLongestVehicle_m, lorry.extent.length_m + 2.0 * lorry.extent.length_sigma_m);
+  if (!from_face_m || *from_face_m < -kInside_m || *from_face_m > reach_m) return std::nullopt;
   return from_face_m;
 }
 
@@ -179,25 +186,13 @@ std::optional<double> LengthWithPart(const TrackTable& table, std::size_t i, std
 std::optional<double> LengthAsConvoy(const TrackTable& table, std::size_t i, std::size_t j) {
   const auto [part, evidence] = table[i];
   const auto [near, its_evidence] = table[j];
-  if (i == j || its_evidence.is_ended || !near.is_confirmed) return std::nullopt;
-  if (!its_evidence.filter.is_vehicle() || !evidence.filter.is_vehicle()) return std::nullopt;
   const double speed_mps = std::abs(near.state_O.mean[kSpeed]);
-  if (speed_mps < kConvoy_mps) return std::nullopt;
-  if (part.support.SharesFrame(near.support, SensorKind::kCamera)) return std::nullopt;
-  if (AreSeenAsTwo(part, near)) return std::nullopt;
-  if (ToSeconds(table.now() - evidence.reflected) > kConvoyFresh_s) return std::nullopt;
+  if (speed_mps < kConvoy_mps || !evidence.filter.is_vehicle()) return std::nullopt;
   if (VelocityDifference(evidence, its_evidence) > kConvoySpeed_mps) return std::nullopt;
-  const Eigen::Rotation2D<double> into(-near.state_O.mean[kYaw]);
-  const Eigen::Vector2d between = into * (evidence.reflection_O - near.state_O.mean.head<2>());
-  if (std::abs(between.y()) > kPartAside_m) return std::nullopt;
-  const Eigen::Vector2d sensor =
-      into * (its_evidence.filter.seen_from_O() - near.state_O.mean.head<2>());
-  const double behind_m = sensor.x() > 0.0 ? -between.x() : between.x();
-  const double from_face_m = 0.5 * near.extent.length_m + behind_m;
-  if (from_face_m < 0.5 * near.extent.length_m || from_face_m > kLongestVehicle_m) {
-    return std::nullopt;
-  }
-  if (from_face_m - near.extent.length_m > kConvoyGap_s * speed_mps) return std::nullopt;
+  const auto from_face_m = BehindFace(table, i, j, kConvoyFresh_s);
+  const double length_m = near.extent.length_m;
+  const double reach_m = std::min(kLongestVehicle_m, length_m + kConvoyGap_s * speed_mps);
+  if (!from_face_m || *from_face_m < 0.5 * length_m || *from_face_m > reach_m) return std::nullopt;
   return from_face_m;
 }
 
@@ -263,12 +258,13 @@ void OneVehicle::JoinParts(double dt_s, TrackTable& table) const {
       evidence.convoy_s = std::max(evidence.convoy_s - dt_s, 0.0);
       continue;
     }
-    (is_convoy ? evidence.convoy_s : evidence.part_s) += dt_s;
     if (is_convoy) evidence.part_s = 0.0;
+    double& held_s = is_convoy ? evidence.convoy_s : evidence.part_s;
+    held_s += dt_s;
     const double hold_s = is_convoy            ? kConvoyHold_s
                           : track.is_confirmed ? kPartHold_s
                                                : kTentativeHold_s;
-    if ((is_convoy ? evidence.convoy_s : evidence.part_s) < hold_s) continue;
+    if (held_s < hold_s) continue;
     evidence.is_ended = true;
     const auto [lorry, its_evidence] = table[whole];
     its_evidence.filter.Lengthen(needed_m, kPartSigma_m);

@@ -22,7 +22,7 @@ constexpr double kReachMargin_m = 1.0;
 constexpr double kEchoRange_m = 2.0;
 constexpr double kEchoSigmas = 3.0;
 constexpr double kEchoBearing_rad = 0.01;
-constexpr double kFaceHalf_m = 1.2;
+constexpr double kFaceHalf_m = 1.2;  // A face throws back from so far beside what was seen of it.
 constexpr double kEchoRate_mps = 0.6;
 constexpr double kEchoWeaker_db = 15.0;
 
@@ -31,7 +31,7 @@ bool IsFinite(const RadarMeasurement& z) {
          std::isfinite(z.range_rate_mps) && z.covariance.allFinite() && z.range_m > 0.0;
 }
 
-// How far beside the nearer cluster a bearing is: its face may throw back from anywhere across.
+// How far beside a cluster a bearing is; 0 between its edges.
 double AsideOf(const RadarMeasurement& z, double azimuth_rad) {
   const double left = AngleDifference(azimuth_rad, std::max(z.azimuth_max_rad, z.azimuth_rad));
   const double right = AngleDifference(std::min(z.azimuth_min_rad, z.azimuth_rad), azimuth_rad);

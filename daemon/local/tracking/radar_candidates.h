@@ -19,6 +19,7 @@ namespace v2vouch {
 /// @param birth_per_m2_s density of new vehicles.
 /// @param table whose CrowdOf the moving clusters is clutter, where it is more than the radar
 /// promises: spread in range and azimuth as this scan shows.
+/// @param clutter_map what clutter is at least, as earlier scans showed it.
 void AddRadarCandidates(const RadarLook& look, std::span<const RadarMeasurement> measurements,
                         double birth_per_m2_s, const TrackTable& table,
                         const ClutterMap& clutter_map, Candidates& candidates);

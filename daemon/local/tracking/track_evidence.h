@@ -22,21 +22,20 @@ struct TrackEvidence {
   Timestamp borne_out{};    ///< Last hit that cannot be the second echo of another vehicle.
   double proven = 0.0;      ///< Existence by pictures, boxes and motion alone.
   bool is_certain = false;  ///< Started by a bench's pose or box: however unlikely, it may stay.
-  bool was_listed = false;
-  bool is_ended = false;                ///< Leaves the table at the end of this step.
+  bool is_ended = false;    ///< Leaves the table at the end of this step.
   std::array<double, 8> class_votes{};  ///< Scores by ObjectClass, older ones less.
 
   // Radar: Tracker::UpdateRadar.
+  Eigen::Vector2d reflection_O = Eigen::Vector2d::Zero();    ///< Last cluster it was given ...
+  Eigen::Vector2d first_moving_O = Eigen::Vector2d::Zero();  ///< Where it first moved.
+  Timestamp reflected{};                                     ///< ... and when.
   int clear_hits = 0;                                        ///< From where the radar can see.
   int moving_hits = 0;                                       ///< With a Doppler of their own.
-  Eigen::Vector2d reflection_O = Eigen::Vector2d::Zero();    ///< Last cluster it was given,
-  Timestamp reflected{};                                     ///< and when.
-  Eigen::Vector2d first_moving_O = Eigen::Vector2d::Zero();  ///< Where it first moved.
-  bool has_travelled = false;                                ///< Moving hits lie apart.
-  int clutter_cell = -1;  ///< Of the cluster that started it, in ClutterMap.
+  int empty_looks = 0;         ///< Scans in a row that saw nothing where only pictures show it.
+  int clutter_cell = -1;       ///< Of its first cluster, in ClutterMap, until it is listed.
+  bool has_travelled = false;  ///< Moving hits lie apart.
 
   // Camera: Tracker::UpdateCamera.
-  int empty_looks = 0;   ///< Scans in a row of a radar that saw nothing there.
   int not_pictured = 0;  ///< Pictures that ought to have shown it.
   bool is_far = false;   ///< Beyond camera_birth_range_m at its last box.
 

@@ -161,9 +161,8 @@ void TrackTable::RemoveEnded() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (evidence_[i].is_ended) {
-      if (evidence_[i].clutter_cell >= 0 && !evidence_[i].was_listed) {
-        came_to_nothing_.push_back({evidence_[i].clutter_cell, tracks_[i].radar_hits()});
-      }
+      const int cell = evidence_[i].clutter_cell;
+      if (cell >= 0) came_to_nothing_.push_back({cell, tracks_[i].radar_hits()});
       continue;
     }
     if (kept != i) {

@@ -14,6 +14,9 @@ namespace {
 constexpr double kClearLook = 0.4;
 // For so long second echoes alone keep a vehicle.
 constexpr double kEchoAlone_s = 1.0;
+// Where only pictures have seen a vehicle, a return within so many standard deviations and metres
+// of its length may be its own.
+constexpr double kEmptySigmas = 3.0;
 constexpr double kEmptyBeyond_m = 2.0;
 constexpr double kEmptyAside_m = 0.5;
 constexpr int kMostEmptyLooks = 12;
@@ -78,17 +81,17 @@ void Tracker::CountEmptyLooks(const RadarLook& look) {
     if (association_.expected().detection(i) < kClearLook) continue;
     const Eigen::Vector2d p_O = evidence.filter.position_O();
     const double sigma_m = LargestSigma(evidence.filter.position_covariance());
-    const double along_m = 3.0 * sigma_m + track.extent.length_m + kEmptyBeyond_m;
+    const double along_m = kEmptySigmas * sigma_m + track.extent.length_m + kEmptyBeyond_m;
     const Eigen::Vector2d line = p_O - look.origin_O();
     const double range_m = line.norm();
-    const double across_m =
-        0.5 * track.extent.length_m + kEmptyAside_m + 3.0 * look.radar.azimuth_sigma_rad * range_m;
+    const double across_m = 0.5 * track.extent.length_m + kEmptyAside_m +
+                            kEmptySigmas * look.radar.azimuth_sigma_rad * range_m;
     const Eigen::Vector2d u = line / std::max(range_m, 0.1);
     bool is_empty = true;
     candidates.ForEachNear(p_O, along_m + across_m, [&](std::size_t j) {
       const Eigen::Vector2d off = candidates[j].p_O - p_O;
-      if (std::abs(off.dot(u)) < along_m && std::abs(u.x() * off.y() - u.y() * off.x()) < across_m)
-        is_empty = false;
+      const double aside_m = std::abs(u.x() * off.y() - u.y() * off.x());
+      is_empty = is_empty && !(std::abs(off.dot(u)) < along_m && aside_m < across_m);
     });
     evidence.empty_looks = is_empty ? std::min(evidence.empty_looks + 1, kMostEmptyLooks)
                                     : std::max(evidence.empty_looks - 2, 0);

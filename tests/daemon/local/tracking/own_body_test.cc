@@ -71,12 +71,7 @@ Drive RunDrive(Scene& scene, const Ghost& ghost, bool with_camera, double durati
     scene.Advance(kStep_s);
     std::vector<RadarMeasurement> scan = scene.Scan(0);
     if (ghost.range_m > 0.0) scan.push_back(GhostReturn(scene, ghost, random));
-    tracker.Predict(scene.now());
-    const RadarConfig& radar = scene.vehicle.radars[0];
-    tracker.UpdateRadar(0, scene.ego_state(), scan, [&](const LocalTrack& track) {
-      return scene.Answer(track, radar.detection_probability, radar.half_fov_rad,
-                          {radar.x_m, radar.y_m});
-    });
+    scene.Radar(tracker, scan);
     if (with_camera && step % 2 == 1) scene.Camera(tracker);
     ++out.lists;
     out.false_tracks += FalseTracks(scene, tracker);

@@ -18,14 +18,19 @@ using Extra = std::function<void(std::vector<RadarMeasurement>&)>;
 
 // One scan of the scene with what `extra` does to it.
 void Scan(Scene& scene, Tracker& tracker, const Extra& extra) {
-  tracker.Predict(scene.now());
   auto scan = scene.Scan(0);
   extra(scan);
-  const RadarConfig& radar = scene.vehicle.radars[0];
-  tracker.UpdateRadar(0, scene.ego_state(), scan, [&](const LocalTrack& track) {
-    return scene.Answer(track, scene.detection_probability, radar.half_fov_rad,
-                        {radar.x_m, radar.y_m});
-  });
+  scene.Radar(tracker, scan);
+}
+
+// What a radar alone makes of the scene in five seconds.
+Tracker AfterFiveSeconds(Scene& scene) {
+  Tracker tracker(TrackerConfig{}, scene.vehicle);
+  for (int step = 0; step < 100; ++step) {
+    scene.Advance(0.05);
+    scene.Radar(tracker);
+  }
+  return tracker;
 }
 
 RadarMeasurement Return(const Scene& scene, double range_m, double azimuth_rad, double ground_mps,
@@ -165,11 +170,7 @@ TEST(Phantom, TwoReflectorsCloserThanAnybodyDrivesAreOneLongVehicle) {
   Scene scene(9);
   scene.ego.speed_mps = 24.0;
   scene.cars = {{.p_W = {50.0, 0.0}, .speed_mps = 24.0}, {.p_W = {60.5, 0.0}, .speed_mps = 24.0}};
-  Tracker tracker(TrackerConfig{}, scene.vehicle);
-  for (int step = 0; step < 100; ++step) {
-    scene.Advance(0.05);
-    scene.Radar(tracker);
-  }
+  const Tracker tracker = AfterFiveSeconds(scene);
   ASSERT_EQ(Scene::Confirmed(tracker), 1);
   const LocalTrack* lorry = Scene::Find(tracker, scene.cars[0], 8.0);
   ASSERT_NE(lorry, nullptr);
@@ -180,11 +181,7 @@ TEST(Phantom, CarsThatFollowAtOneSecondStayTwo) {
   Scene scene(9);
   scene.ego.speed_mps = 24.0;
   scene.cars = {{.p_W = {50.0, 0.0}, .speed_mps = 24.0}, {.p_W = {78.0, 0.0}, .speed_mps = 24.0}};
-  Tracker tracker(TrackerConfig{}, scene.vehicle);
-  for (int step = 0; step < 100; ++step) {
-    scene.Advance(0.05);
-    scene.Radar(tracker);
-  }
+  const Tracker tracker = AfterFiveSeconds(scene);
   EXPECT_EQ(Scene::Confirmed(tracker), 2);
 }
 
@@ -192,11 +189,7 @@ TEST(Phantom, AQueueThatStandsCloseIsNoLorry) {
   Scene scene(9);
   scene.ego.speed_mps = 3.0;
   scene.cars = {{.p_W = {20.0, 0.0}, .speed_mps = 3.0}, {.p_W = {27.0, 0.0}, .speed_mps = 3.0}};
-  Tracker tracker(TrackerConfig{}, scene.vehicle);
-  for (int step = 0; step < 100; ++step) {
-    scene.Advance(0.05);
-    scene.Radar(tracker);
-  }
+  const Tracker tracker = AfterFiveSeconds(scene);
   EXPECT_EQ(Scene::Confirmed(tracker), 2);
 }
 
@@ -224,11 +217,6 @@ TEST(Phantom, AStandingCarThatRadarsStillSeeOutlivesACamerasBadSecond) {
   Scene scene(11);
   scene.cars = {{.p_W = {25.0, 3.0}}};
   Tracker tracker(TrackerConfig{}, scene.vehicle);
-  const auto camera_without = [&] {
-    scene.cars[0].is_absent = true;  // Visibility says that it should be seen.
-    scene.Camera(tracker);
-    scene.cars[0].is_absent = false;
-  };
   for (int step = 0; step < 60; ++step) {
     scene.Advance(0.05);
     scene.Radar(tracker);
@@ -238,7 +226,9 @@ TEST(Phantom, AStandingCarThatRadarsStillSeeOutlivesACamerasBadSecond) {
   for (int step = 0; step < 24; ++step) {  // 1.2 s.
     scene.Advance(0.05);
     scene.Radar(tracker);
-    camera_without();
+    scene.cars[0].is_absent = true;  // Visibility says that it should be seen.
+    scene.Camera(tracker);
+    scene.cars[0].is_absent = false;
     EXPECT_NE(Scene::Find(tracker, scene.cars[0]), nullptr) << step;
   }
   // Neither sees it any more: it has left.

@@ -274,9 +274,10 @@ Detectability Scene::Answer(const LocalTrack& track, double nominal, double half
   return {nominal, Visibility::kVisible};
 }
 
-void Scene::Radar(Tracker& tracker, int radar) {
+void Scene::Radar(Tracker& tracker, int radar) { Radar(tracker, Scan(radar), radar); }
+
+void Scene::Radar(Tracker& tracker, const std::vector<RadarMeasurement>& scan, int radar) {
   tracker.Predict(now());
-  const auto scan = Scan(radar);
   const RadarConfig& device = vehicle.radars[static_cast<std::size_t>(radar)];
   const double half_fov = device.half_fov_rad;
   tracker.UpdateRadar(radar, ego_state(), scan, [&](const LocalTrack& track) {

@@ -53,6 +53,8 @@ class Scene {
 
   /// Predict and update with one scan / picture.
   void Radar(Tracker& tracker, int radar = 0);
+  /// The same with a scan of it that was edited.
+  void Radar(Tracker& tracker, const std::vector<RadarMeasurement>& scan, int radar = 0);
   void Camera(Tracker& tracker, int camera = 0);
   /// What visibility would answer: nominal probability, hidden and out-of-view cars.
   [[nodiscard]] Detectability Answer(const LocalTrack& track, double nominal, double half_fov_rad,
