@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/warnings/warner.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "daemon/common/base/angle.h"
@@ -161,11 +163,7 @@ WarningList Warner::Make() {
     scene.targets =
         MergeLists(has_local ? &*local_ : nullptr, has_priority ? &*priority_ : nullptr, now);
     NoteSpeeds(scene.targets, now);
-    for (Entry& entry : entries_) {
-      entry.is_listed = std::ranges::any_of(scene.targets, [&entry](const Target& target) {
-        return IsSameVehicle(entry.shown, target.track_id, target.local_id);
-      });
-    }
+    for (const Target& target : scene.targets) Follow(target, scene);
     Take(Assess(scene, body_, config_), now);
   }
   EndEntries(now);
@@ -174,6 +172,46 @@ WarningList Warner::Make() {
   }
   std::ranges::stable_sort(out.warnings, IsMoreUrgent);
   return out;
+}
+
+// What is held goes with its vehicle, and one vehicle has one warning of a kind, also where it was
+// in two lists unconnected until now.
+void Warner::Follow(const Target& target, const Scene& scene) {
+  const auto is_its = [&target](const Entry& entry) {
+    return IsSameVehicle(entry.shown, target.track_id, target.local_id);
+  };
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (!is_its(entries_[i])) continue;
+    for (std::size_t j = entries_.size(); j-- > i + 1;) {
+      if (entries_[j].shown.kind != entries_[i].shown.kind || !is_its(entries_[j])) continue;
+      Join(entries_[j], entries_[i]);
+      entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+    Entry& entry = entries_[i];
+    entry.is_listed = true;
+    Warning& shown = entry.shown;
+    if (target.track_id != 0) shown.track_id = target.track_id;
+    if (target.local_id != 0) shown.local_id = target.local_id;
+    shown.source = target.source;
+    shown.visibility = target.visibility;
+    const StateVector& x = target.state_O.mean;
+    shown.figures.position_B = Eigen::Rotation2Dd(-scene.ego_yaw_O) * (x.head<2>() - scene.ego_p_O);
+    shown.figures.speed_mps = x[kSpeed];
+  }
+}
+
+void Warner::Join(const Entry& other, Entry& entry) {
+  const Timestamp since = std::min(entry.shown.since, other.shown.since);
+  std::array<Timestamp, kLevels> last_true = entry.last_true;
+  for (std::size_t i = 0; i < kLevels; ++i) {
+    last_true[i] = std::max(last_true[i], other.last_true[i]);
+  }
+  const auto rank = [](const Entry& each) {
+    return each.is_shown ? 1 + Rank(each.shown.level) : 0;
+  };
+  if (rank(other) > rank(entry)) entry = other;
+  entry.shown.since = since;
+  entry.last_true = last_true;
 }
 
 void Warner::EndEntries(Timestamp now) {

@@ -53,6 +53,8 @@ class Warner {
 
   WarningList Make();
   void StartAnew(const TargetList& newest);
+  void Follow(const Target& target, const Scene& scene);
+  static void Join(const Entry& other, Entry& entry);
   void EndEntries(Timestamp now);
   void NoteSpeeds(std::vector<Target>& targets, Timestamp now);
   void Take(const std::vector<Assessment>& found, Timestamp now);

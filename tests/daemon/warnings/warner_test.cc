@@ -111,6 +111,40 @@ TEST(Warner, HiddenVehicleKeepsItsWarningThenIsLost) {
   EXPECT_TRUE(drive.Step({}, {}).warnings.empty());
 }
 
+TEST(Warner, VehicleThatTheListsJoinHasOneWarningWhereItIs) {
+  Drive drive;
+  drive.Step({});
+  Target own = Car(1, 40.0, 0, 0, 0);
+  Target theirs = own;
+  theirs.track_id = 9;
+  theirs.last_own = drive.now();
+  for (int i = 0; i < 5; ++i) {
+    own.state_O.mean[kX] -= 0.75;
+    theirs.state_O.mean[kX] -= 0.75;
+    theirs.local_id = 0;  // PRIORITY does not know yet that LOCAL sees it again.
+    EXPECT_LE(drive.Step({own}, {theirs}).warnings.size(), 2u);
+  }
+  theirs.local_id = own.local_id;
+  for (int i = 0; i < 10; ++i) {
+    own.state_O.mean[kX] -= 0.75;
+    theirs.state_O.mean[kX] -= 0.75;
+    const WarningList list = drive.Step({own}, {theirs});
+    ASSERT_EQ(list.warnings.size(), 1u) << i;
+    EXPECT_EQ(list.warnings[0].source, Source::kBoth);
+    EXPECT_NEAR(list.warnings[0].figures.position_B.x(), own.state_O.mean[kX], 1e-9);
+  }
+}
+
+TEST(Warner, HeldWarningGoesWithItsVehicle) {
+  Drive drive;
+  drive.Step({});
+  for (int i = 0; i < 3; ++i) drive.Step({kNear});
+  const WarningList held = drive.Step({Car(1, 20.0, -8.0, 0, 0)});  // Beside the path by now.
+  ASSERT_EQ(held.warnings.size(), 1u);
+  EXPECT_EQ(held.warnings[0].basis, Basis::kHeld);
+  EXPECT_NEAR(held.warnings[0].figures.position_B.y(), -8.0, 1e-9);
+}
+
 TEST(Warner, UrgentStaysWhenExistenceFalls) {
   Drive drive;
   drive.Step({});
