@@ -233,6 +233,13 @@ bool PointFilter::Update(const CameraLook& look, const CameraMeasurement& z, boo
   return model && JosephUpdate<4>(model->y, model->H, model->R, mean_, covariance_);
 }
 
+PointFilter PointFilter::Doubted(double sigma_mps) const {
+  PointFilter doubted = *this;
+  doubted.covariance_.bottomRightCorner<2, 2>() +=
+      sigma_mps * sigma_mps * Eigen::Matrix2d::Identity();
+  return doubted;
+}
+
 bool PointFilter::HasDirection(double max_sigma_rad, double most_share) const {
   const Eigen::Vector2d v = mean_.tail<2>();
   const double speed = v.norm();

@@ -31,6 +31,9 @@ class PointFilter {
   bool Update(const RadarLook& look, const RadarMeasurement& z, bool is_exact);
   bool Update(const CameraLook& look, const CameraMeasurement& z, bool is_exact);
 
+  /// The same with the velocity in doubt by this much in any direction, 1 sigma.
+  [[nodiscard]] PointFilter Doubted(double sigma_mps) const;
+
   /// The velocity points somewhere: at least 1 m/s, known to `most_share` of itself along it, and
   /// across it to `max_sigma_rad` as an angle.
   [[nodiscard]] bool HasDirection(double max_sigma_rad, double most_share) const;

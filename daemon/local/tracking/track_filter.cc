@@ -28,6 +28,9 @@ constexpr double kYoung_s = 0.7;
 // Lasting error of the reflection model, along the vehicle and in any direction.
 constexpr double kAlongFloor_m = 0.06;
 constexpr double kFloor_m = 0.1;
+// The middle of a picture's box slides over the body while the line of sight turns, from the tail
+// round a corner to the far end of the flank: so far per radian, 1 sigma.
+constexpr double kSlide_m = 2.0;
 // A silhouette wider than this shows a side, unless a lorry's.
 constexpr double kWidestCar_m = 3.2;
 
@@ -37,6 +40,7 @@ TrackFilter TrackFilter::FromRadar(const RadarLook& look, const RadarMeasurement
                                    const FilterSettings& settings) {
   TrackFilter filter;
   filter.point_ = PointFilter::FromRadar(look, z, settings.point_targets);
+  filter.NoteDoppler(z);
   filter.seen_from_ = look.origin_O();
   filter.default_yaw_rad_ = look.ego.X_OB.yaw_rad();
   return filter;
@@ -57,7 +61,9 @@ TrackFilter TrackFilter::FromCamera(const CameraLook& look, const CameraMeasurem
 }
 
 void TrackFilter::TakeStanding(const Fix& fix) {
-  if (!is_vehicle_) point_ = PointFilter::FromStanding(fix, seen_from_);
+  if (is_vehicle_) return;
+  point_ = PointFilter::FromStanding(fix, seen_from_);
+  if (doppler_ == Doppler::kUnseen) doppler_ = Doppler::kNone;
 }
 
 void TrackFilter::Predict(double dt_s, const FilterSettings& settings) {
@@ -79,21 +85,48 @@ std::optional<Likelihood> TrackFilter::Evaluate(const Look& look, const Measurem
 template <class Look, class Measurement>
 bool TrackFilter::Update(const Look& look, const Measurement& z, const FilterSettings& settings) {
   seen_from_ = look.origin_O();
+  sensor_velocity_ = look.ego.X_OB.rotation() * Eigen::Vector2d(look.ego.speed_mps, 0.0);
   if (!is_vehicle_) {
     if (!point_.Update(look, z, settings.point_targets)) return false;
+    NoteDoppler(z);
     PromoteIfClear(settings);
     return true;
   }
+  if (moves_in_pictures_) {
+    NoteDoppler(z);
+    if (doppler_ == Doppler::kNone) return StandStill(look, z);
+    moves_in_pictures_ = doppler_ == Doppler::kUnseen;
+  }
   return vehicle_.Update(look, z, age_s_ < kYoung_s, settings);
+}
+
+void TrackFilter::NoteDoppler(const RadarMeasurement& z) {
+  if (doppler_ != Doppler::kMoving) doppler_ = z.is_static ? Doppler::kNone : Doppler::kMoving;
+}
+
+// The motion was the pictures' error: the first radar that sees it sees it standing.
+bool TrackFilter::StandStill(const RadarLook& look, const RadarMeasurement& z) {
+  point_ = PointFilter::FromStanding(ReflectionFixOf(look, z), seen_from_);
+  is_vehicle_ = moves_in_pictures_ = false;
+  return true;
+}
+
+// What never showed a radar any Doppler stands, however its reflections wander: across the line of
+// sight nothing drives for long.
+bool TrackFilter::HasDirection(const PointFilter& point, double max_sigma_rad,
+                               double most_share) const {
+  return doppler_ != Doppler::kNone && point.HasDirection(max_sigma_rad, most_share);
 }
 
 void TrackFilter::PromoteIfClear(const FilterSettings& settings) {
   // A lorry's point lies somewhere along it: AssumeClass knows how little that says.
   const ObjectClass first = IsLong(object_class_) ? ObjectClass::kUnknown : object_class_;
   const Extent size = ClassExtent(first);
-  if (point_.HasDirection(kDirectedSigma_rad, kDirectedShare)) {
-    vehicle_.StartMoving(point_, size, seen_from_, settings);
+  const PointFilter point = SlidingPoint(settings);
+  if (HasDirection(point, kDirectedSigma_rad, kDirectedShare)) {
+    vehicle_.StartMoving(point, size, seen_from_, settings);
     is_vehicle_ = true;
+    moves_in_pictures_ = doppler_ == Doppler::kUnseen;
   } else if (point_.IsStanding()) {
     vehicle_.StartStanding(point_, default_yaw_rad_, size, seen_from_, settings);
     is_vehicle_ = true;
@@ -115,11 +148,23 @@ void TrackFilter::SetClass(ObjectClass object_class) {
   object_class_ = object_class;
 }
 
+// The point with the doubt that passing it leaves in a velocity which only pictures have seen.
+PointFilter TrackFilter::SlidingPoint(const FilterSettings& settings) const {
+  if (settings.point_targets || doppler_ == Doppler::kMoving) return point_;
+  const Eigen::Vector2d line = point_.position() - seen_from_;
+  const Eigen::Vector2d passing = point_.velocity() - sensor_velocity_;
+  const double range_m = std::max(line.norm(), 1.0);
+  const double turn_radps =
+      std::abs(line.x() * passing.y() - line.y() * passing.x()) / (range_m * range_m);
+  return point_.Doubted(kSlide_m * turn_radps);
+}
+
 ExtendedState TrackFilter::ShowPoint(const FilterSettings& settings) const {
   const Extent size = ClassExtent(object_class_);
   const double share = size.length_m < kSmall_m ? kShownSmallShare : kShownShare;
-  if (point_.HasDirection(kShownSigma_rad, share)) {
-    return VehicleAt(point_, 0.0, 0.0, size, seen_from_, settings);
+  const PointFilter point = SlidingPoint(settings);
+  if (HasDirection(point, kShownSigma_rad, share)) {
+    return VehicleAt(point, 0.0, 0.0, size, seen_from_, settings);
   }
   ExtendedState state =
       VehicleAt(point_, default_yaw_rad_, kAssumedYawSigma_rad, size, seen_from_, settings);

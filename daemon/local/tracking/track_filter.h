@@ -15,7 +15,8 @@ namespace v2vouch {
 ///
 /// 1. *point* (PointFilter): position and velocity of the reflecting point, while nothing is known
 ///    about the direction. A crossing vehicle would have its heading wrong by 90 degrees in any
-///    model that needs one.
+///    model that needs one. While it is passed, the middle of its picture slides over the body,
+///    and what never showed a radar any Doppler does not move, whatever its velocity seems to be.
 /// 2. *vehicle* (VehicleFilter): CTRA with size, from the moment the velocity points somewhere
 ///    (heading sigma below 0.15 rad) or is known to be none on. A vehicle that stops keeps its yaw.
 class TrackFilter {
@@ -83,14 +84,26 @@ class TrackFilter {
   [[nodiscard]] Eigen::Matrix2d position_covariance() const;
 
  private:
+  enum class Doppler { kUnseen, kNone, kMoving };  // What radars have shown of it so far.
+
+  void NoteDoppler(const RadarMeasurement& z);
+  void NoteDoppler(const CameraMeasurement&) {}
+  bool StandStill(const RadarLook& look, const RadarMeasurement& z);
+  bool StandStill(const CameraLook&, const CameraMeasurement&) { return true; }
+  [[nodiscard]] bool HasDirection(const PointFilter& point, double max_sigma_rad,
+                                  double most_share) const;
   void PromoteIfClear(const FilterSettings& settings);
+  [[nodiscard]] PointFilter SlidingPoint(const FilterSettings& settings) const;
   [[nodiscard]] ExtendedState ShowPoint(const FilterSettings& settings) const;
 
   bool is_vehicle_ = false;
+  Doppler doppler_ = Doppler::kUnseen;
+  bool moves_in_pictures_ = false;  // A vehicle whose motion no radar has confirmed.
   double age_s_ = 0.0;
   PointFilter point_;  // Until it is a vehicle.
   VehicleFilter vehicle_;
-  Eigen::Vector2d seen_from_ = Eigen::Vector2d::Zero();  // Last sensor that saw it, in O.
+  Eigen::Vector2d seen_from_ = Eigen::Vector2d::Zero();        // Last sensor that saw it, in O.
+  Eigen::Vector2d sensor_velocity_ = Eigen::Vector2d::Zero();  // Of the same, in O.
   double default_yaw_rad_ = 0.0;
   ObjectClass object_class_ = ObjectClass::kUnknown;
 };

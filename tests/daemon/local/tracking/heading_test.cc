@@ -221,5 +221,40 @@ TEST(Heading, ParkedCarFoundByTheCameraDoesNotSpin) {
   }
 }
 
+// What is seen of a car that stands slides from its tail round a corner to its flank while it is
+// passed: that is no motion of the car. Cars of a row come into view one after the other, late.
+TEST(Heading, StandingCarsThatArePassedCloselyDoNotSeemToCreepAcross) {
+  int judged = 0, creeping = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Scene scene(seed);
+    const double from_m = 12.0 + 0.3 * static_cast<double>(seed);
+    scene.vehicle = OneRadarOneCamera();
+    scene.ego.speed_mps = 14.0;
+    for (int i = 0; i < 7; ++i) {
+      scene.cars.push_back({.p_W = {40.0 + 7.0 * i, i % 2 == 0 ? -2.6 : 2.6}});
+    }
+    Tracker tracker(TrackerConfig{}, scene.vehicle);
+    for (int step = 0; step < 120; ++step) {
+      for (Car& car : scene.cars) {
+        const double ahead_m = car.p_W.x() - scene.ego.p_W.x();
+        car.is_absent = ahead_m > from_m;
+      }
+      scene.Advance(kStep_s);
+      scene.Radar(tracker);
+      if (step % 2 == 1) scene.Camera(tracker);
+      for (const LocalTrack& track : tracker.tracks()) {
+        if (!track.is_confirmed) continue;
+        ++judged;
+        const StateVector& x = track.state_O.mean;
+        const double sigma = std::sqrt(track.state_O.covariance(kYaw, kYaw));
+        creeping += std::abs(x[kSpeed]) > 1.0 && sigma < 0.25 && std::abs(std::sin(x[kYaw])) > 0.5;
+      }
+    }
+  }
+  std::printf("passed: %d of %d lists creep\n", creeping, judged);
+  ASSERT_GT(judged, 500);
+  EXPECT_LT(creeping, judged / 50);
+}
+
 }  // namespace
 }  // namespace v2vouch
