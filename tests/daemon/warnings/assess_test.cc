@@ -85,6 +85,20 @@ TEST(Assess, ParkedRowQueueAndParallelRoadSayNothing) {
   }
 }
 
+// A car of a parked row whose axis is not known yet: a place 0.1 m beside the ego's flank, and it
+// might stand across as well.
+TEST(Assess, BodyOfUnknownAxisIsUrgentOnlyWhereItsMiddleIsInThePath) {
+  Target parked = Car(1, 11.0, -1.9, 0, 0);
+  parked.state_O.covariance(kYaw, kYaw) = 0.7 * 0.7;
+  const auto level = [&parked](double y) {
+    parked.state_O.mean[kY] = y;
+    const auto found = Assess(SceneOf(Driving(14.0), {parked}), {}, {});
+    return found.empty() ? Level::kInfo : found.front().warning.level;
+  };
+  EXPECT_LT(level(-1.9), Level::kUrgent);
+  EXPECT_EQ(level(0.0), Level::kUrgent);
+}
+
 // A lorry in the next lane that we pass at 31 m/s: its heading and yaw rate are not known better.
 Target Lorry(double x, double yaw, double yaw_rate) {
   Target lorry = Car(1, x, -3.7, yaw, 26.7);
