@@ -109,6 +109,14 @@ def test_an_ars408_frame_made_by_hand():
     assert (seen.rcs_dbsm, seen.track_id) == (10.0, 3)
 
 
+def test_a_candump_without_times_is_told(folder):
+    with open(folder + "/no_times.txt", "w", encoding="ascii") as file:
+        file.write("  can0  60B   [8]  03 4E 28 00 00 00 00 94\n")
+    done = subprocess.run([sys.executable, ROOT + "/examples/python/can_radar.py", "ars408", folder + "/no_times.txt",
+                           "FRONT", folder + "/radar.lcm"], capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and "-t a" in done.stderr, done
+
+
 def test_the_recorded_drive_of_a_toyota():
     folder = os.environ.get("V2VOUCH_DATA", ROOT + "/../shared/data") + "/radar/comma2k19_segment"
     if not os.path.isdir(folder):
@@ -139,6 +147,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         test_a_replayed_log_reaches_the_python_consumer(folder)
         test_the_python_reader_tells_of_a_log_that_is_cut_off_or_overwritten(folder)
+        test_a_candump_without_times_is_told(folder)
     test_the_consumer_merges_by_local_id_and_knows_what_it_does_not_see()
     test_an_ars408_frame_made_by_hand()
     test_the_recorded_drive_of_a_toyota()
