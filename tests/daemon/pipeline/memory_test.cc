@@ -60,5 +60,36 @@ TEST(Memory, ASecondFloodTakesNoMoreThanTheFirst) {
   EXPECT_LT(second_mb, first_mb + 1.0);
 }
 
+// What the process holds of the system, used or not.
+double TakenMb() {
+  const auto held = mallinfo2();
+  return static_cast<double>(held.arena + held.hblkhd) * 1e-6;
+}
+
+TEST(Memory, ClocksThatStepAgainAndAgainTakeNoMoreThanOnce) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "SKIPPED: the sanitizer's allocator does not count";
+#endif
+  testing::SyntheticDrive drive;
+  drive.duration_s = 2.0;
+  drive.cars.push_back({.x_m = 25.0, .y_m = 0.0, .speed_mps = 8.5, .sender = 0x11});
+  Perception perception(PerceptionConfig{}, std::make_unique<NullBiasEstimator>());
+  Outputs outputs;
+  double first_mb = 0.0;
+  for (int lap = 0; lap < 6; ++lap) {
+    int restarts = 0;
+    for (Input input : testing::MakeInputs(drive)) {
+      std::visit([&](auto& message) { message.stamp += FromSeconds(20.0 * lap); }, input);
+      perception.Step(input, outputs);
+      restarts += static_cast<int>(
+          std::ranges::count(outputs.diagnostics, Reason::kClockRestart, &Diagnostic::reason));
+    }
+    EXPECT_EQ(restarts, lap > 0 ? 1 : 0);
+    if (lap == 0) first_mb = TakenMb();
+  }
+  // 23 MB more where the new tables of senders are made beside the old ones.
+  EXPECT_LT(TakenMb(), first_mb + 3.0);
+}
+
 }  // namespace
 }  // namespace v2vouch
