@@ -39,7 +39,7 @@ struct Perception::State {
       : config(configuration),
         clock(configuration.timeline),
         timeline(configuration),
-        intake(configuration.v2v),
+        intake(std::in_place, configuration.v2v),
         bias(std::move(estimator)) {}
 
   template <class OwnFrame>
@@ -58,7 +58,7 @@ struct Perception::State {
   SourceClock clock;
   Timeline timeline;
   OwnIds own_ids;
-  BsmIntake intake;
+  std::optional<BsmIntake> intake;  // Always there, but for a moment of Restart().
   std::unique_ptr<BiasEstimator> bias;
   std::int64_t lists = 0;
   std::int64_t v2v_lists = 0;
@@ -132,8 +132,8 @@ std::optional<Reason> Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs)
     return Reason::kBsmOwnEcho;
   }
   const EgoPlace place = Place();
-  intake.Expire(bsm.stamp);
-  const auto claim = intake.Accept(bsm, place);
+  intake->Expire(bsm.stamp);
+  const auto claim = intake->Accept(bsm, place);
   if (!claim) {
     Tell(bsm, claim.reason(), outputs);
     outputs.Refuse(claim.refusal(), bsm.stamp);
@@ -147,7 +147,7 @@ std::optional<Reason> Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs)
     return std::nullopt;
   }
   Claim followed = *claim;
-  if (const SenderTrack* sender = intake.Find(bsm.sender)) {
+  if (const SenderTrack* sender = intake->Find(bsm.sender)) {
     followed.first_heard = sender->first_received;
   }
   const auto placement =
@@ -157,7 +157,7 @@ std::optional<Reason> Perception::State::OnBsm(const Bsm& bsm, Outputs& outputs)
   if (placement.refusal) return placement.refusal;
   // The sender of a validated vehicle keeps its place in the table, whatever floods it.
   const TrustState trust = timeline.priority().TrustOf(bsm.sender);
-  intake.Pin(bsm.sender, trust == TrustState::kValidated || trust == TrustState::kBridged);
+  intake->Pin(bsm.sender, trust == TrustState::kValidated || trust == TrustState::kBridged);
   return std::nullopt;
 }
 
@@ -183,7 +183,7 @@ void Perception::State::Settle() {
 // A frame only begins a list, and ends it where one piece is all.
 void Perception::State::ListSenders(Outputs& outputs) {
   if (!sender_list.is_open() || (outputs.has_lists && !sender_list.is_new())) return;
-  if (!sender_list.Continue(intake, timeline.priority(), bias->report())) return;
+  if (!sender_list.Continue(*intake, timeline.priority(), bias->report())) return;
   outputs.has_v2v_list = true;
   sender_list.Take(outputs.v2v);
   outputs.v2v.seq = ++v2v_lists;
@@ -194,7 +194,9 @@ void Perception::State::Restart() {
   std::vector<TrustMemory> kept = timeline.priority().TrustToKeep(timeline.newest_time());
   timeline = Timeline(config);
   timeline.RestoreTrust(std::move(kept));
-  intake = BsmIntake(config.v2v);
+  // 23 MB of tables: the old ones go before the new ones come, or what the process takes doubles.
+  intake.reset();
+  intake.emplace(config.v2v);
   bias->Restart();
   listed = {};
   v2v_listed = {};
@@ -237,7 +239,7 @@ void Perception::State::Publish(bool is_correction, Outputs& outputs) {
 
   if (at - v2v_listed >= FromSeconds(kV2vListPeriod_s) && !sender_list.is_open()) {
     v2v_listed = at;
-    sender_list.Open(outputs.priority, intake.senders());
+    sender_list.Open(outputs.priority, intake->senders());
   }
 }
 
@@ -265,7 +267,7 @@ Timestamp Perception::newest_frame() const {
 }
 
 void Perception::NoteOwnId(SenderId id, Timestamp at) { state_->own_ids.Note(id, at); }
-int Perception::sender_count() const { return static_cast<int>(state_->intake.senders().size()); }
+int Perception::sender_count() const { return static_cast<int>(state_->intake->senders().size()); }
 
 bool Perception::ego_gnss_suspect() const {
   return state_->timeline.priority().is_ego_gnss_suspect();
@@ -277,7 +279,7 @@ void Perception::CollectNotices(std::vector<Notice>& notices) const {
   state_->clock.CollectNotices(notices);
   state_->timeline.local().ego_reading().CollectNotices(notices);
   state_->timeline.priority().CollectNotices(notices);
-  state_->intake.CollectNotices(notices);
+  state_->intake->CollectNotices(notices);
 }
 
 bool Perception::IsAlive(SensorKey sensor) const {

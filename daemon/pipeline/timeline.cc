@@ -15,6 +15,9 @@ constexpr double kOnTime_s = 0.1;
 // Events without a checkpoint in a row, at most: where no frames come the ego's motion gets some.
 constexpr std::size_t kLongestRun = 64;
 
+// Spare events and checkpoints beyond as many as are in use.
+constexpr std::size_t kFewSpares = 16;
+
 // Late claims that may wait for the next frame, at most: frames may fail to come.
 constexpr int kMostWaiting = 256;
 // What one late claim may cause to be run again, in claims (some 15 us each). An older backlog
@@ -64,7 +67,6 @@ std::unique_ptr<Timeline::Event> Timeline::NewEvent(TimelineInput input) {
     spare_events_.pop_back();
     event->refusal.reset();
     event->has_frame = false;
-    event->radar.is_ready = false;
     event->emitted.clear();
     event->residuals.clear();
   }
@@ -83,12 +85,21 @@ bool Timeline::NeedsCheckpoint(const TimelineInput& input) const {
 }
 
 std::unique_ptr<Timeline::Checkpoint> Timeline::NewCheckpoint() {
+  ++checkpoints_;
   if (spare_checkpoints_.empty()) {
     return std::make_unique<Checkpoint>(Checkpoint{local_, priority_});
   }
   auto checkpoint = std::move(spare_checkpoints_.back());
   spare_checkpoints_.pop_back();
+  checkpoint->radar.is_ready = false;
   return checkpoint;
+}
+
+void Timeline::Recycle(std::unique_ptr<Checkpoint> checkpoint) {
+  --checkpoints_;
+  if (spare_checkpoints_.size() < kFewSpares + checkpoints_) {
+    spare_checkpoints_.push_back(std::move(checkpoint));
+  }
 }
 
 // Nothing from outside moves the agreed time, so nothing from outside can push one of ours out.
@@ -247,15 +258,18 @@ void Timeline::Trim() {
   for (; dropped > 0; --dropped, --settled_events_) {
     std::unique_ptr<Event> event = std::move(events_.front());
     events_.pop_front();
-    if (event->after) spare_checkpoints_.push_back(std::exchange(before_, std::move(event->after)));
+    if (event->after) Recycle(std::exchange(before_, std::move(event->after)));
     spare_events_.push_back(std::move(event));
+  }
+  if (spare_events_.size() > kFewSpares + events_.size()) {
+    spare_events_.resize(kFewSpares + events_.size());
   }
 }
 
 const LocalFrame* Timeline::newest_frame() const {
   const auto found = std::find_if(events_.rbegin(), events_.rend(),
                                   [](const auto& event) { return event->has_frame; });
-  return found == events_.rend() ? nullptr : &(*found)->frame;
+  return found == events_.rend() ? nullptr : &(*found)->after->frame;
 }
 
 std::vector<BiasResidual> Timeline::TakeSettled() { return std::exchange(settled_residuals_, {}); }

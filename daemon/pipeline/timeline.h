@@ -93,18 +93,19 @@ class Timeline {
   [[nodiscard]] Timestamp settled() const { return settled_; }
 
  private:
+  // The state after an event, and what LOCAL made of that event where it is a frame.
   struct Checkpoint {
     LocalPerception local;
     V2vPerception priority;
+    LocalFrame frame{};
+    RadarPreparation radar{};
   };
   struct Event {
     EventKey key;
     TimelineInput input;
     std::optional<Reason> refusal;  // Why it was of no use in the latest run.
     bool has_frame = false;
-    LocalFrame frame;
-    RadarPreparation radar;
-    std::unique_ptr<Checkpoint> after;   // The state after this event.
+    std::unique_ptr<Checkpoint> after;   // Every frame has one; of the others few.
     std::vector<std::uint64_t> emitted;  // Diagnostics that have left already, by hash.
     std::vector<BiasResidual> residuals;
   };
@@ -118,6 +119,7 @@ class Timeline {
 
   std::unique_ptr<Event> NewEvent(TimelineInput input);
   std::unique_ptr<Checkpoint> NewCheckpoint();
+  void Recycle(std::unique_ptr<Checkpoint> checkpoint);
   [[nodiscard]] std::optional<Reason> WhyNot(const TimelineInput& input) const;
   void AdvanceTo(Timestamp agreed);
   [[nodiscard]] bool IsAffordable(const TimelineInput& input);
@@ -143,8 +145,10 @@ class Timeline {
   std::deque<std::unique_ptr<Event>> events_;  // Ordered by key.
   std::size_t settled_events_ = 0;             // The first of them; kept for the next checkpoint.
   std::unique_ptr<Checkpoint> before_;         // The state before the first event.
+  // Kept for their allocations: no more than are in use, so that a flood's are given back.
   std::vector<std::unique_ptr<Event>> spare_events_;
   std::vector<std::unique_ptr<Checkpoint>> spare_checkpoints_;
+  std::size_t checkpoints_ = 0;  // In events_.
   std::vector<BiasResidual> settled_residuals_;
   std::vector<Reported> reported_;   // Of the buffer's time.
   bool has_local_ = false;           // An input LOCAL reads was taken.

@@ -47,17 +47,18 @@ int Timeline::RunLocal(std::size_t from, Outputs& outputs) {
       if (refusal) return step_.Refuse(*refusal, event.key.time);
       for (const Reason failure : local_.failures()) step_.Refuse(failure, event.key.time);
     };
-    std::visit(
-        Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
-                   [&](const RadarScan& scan) {
-                     keep(local_.OnRadarScan(scan, event.radar, event.frame));
-                   },
-                   [&](const CameraDetections& boxes) {
-                     keep(local_.OnCameraDetections(boxes, event.frame));
-                   },
-                   [&](const ObjectList& list) { keep(local_.OnObjectList(list, event.frame)); },
-                   [](const GnssFix&) {}, [](const TimedClaim&) {}},
-        event.input);
+    std::visit(Overloaded{[&](const EgoMotion& sample) { local_.OnEgoMotion(sample); },
+                          [&](const RadarScan& scan) {
+                            keep(local_.OnRadarScan(scan, event.after->radar, event.after->frame));
+                          },
+                          [&](const CameraDetections& boxes) {
+                            keep(local_.OnCameraDetections(boxes, event.after->frame));
+                          },
+                          [&](const ObjectList& list) {
+                            keep(local_.OnObjectList(list, event.after->frame));
+                          },
+                          [](const GnssFix&) {}, [](const TimedClaim&) {}},
+               event.input);
     frames += HasFrame(event.input) ? 1 : 0;
     if (event.after) event.after->local = local_;
     EmitOnce(event, step_, outputs);
@@ -102,7 +103,8 @@ int Timeline::RunPriority(std::size_t from, Outputs& outputs) {
                           },
                           [&](const auto&) {
                             if (!event.has_frame) return;
-                            priority_.OnFrame(event.frame, event.after->local.visibility(), step_);
+                            priority_.OnFrame(event.after->frame, event.after->local.visibility(),
+                                              step_);
                             newest_ = std::max(newest_, event.key.time);
                           }},
                event.input);

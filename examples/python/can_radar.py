@@ -114,6 +114,9 @@ def main():
     if log:
         log.close()
     print(f"{count} scans, {detections} detections", file=sys.stderr)
+    if count == 0:
+        print("no frame of this radar with a time: candump -l, -L or -t a write times; is the bus right?",
+              file=sys.stderr)
     return 0 if count else 1
 
 

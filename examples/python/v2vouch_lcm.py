@@ -19,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import warnings
 
 SYNC = 0xEDA1DA01
 SHORT, FRAGMENT = 0x4C433032, 0x4C433033
@@ -84,20 +85,25 @@ class Types:
 
 
 def read_events(path):
-    """(utime of recording, channel, bytes) of an LCM log; damage is skipped to the next event."""
+    """(utime of recording, channel, bytes) of an LCM log; damage is skipped to the next event, with a warning."""
     with open(path, "rb") as file:
         data = file.read()
-    at = 0
+    at, damaged, is_damaged = 0, 0, False
     while at + 28 <= len(data):
         sync, _, utime, name, size = struct.unpack_from(">IqqII", data, at)
         end = at + 28 + name + size
         if sync != SYNC or not 1 <= name <= 63 or size > LARGEST or end > len(data):
+            damaged, is_damaged = damaged + (not is_damaged), True
             at = data.find(struct.pack(">I", SYNC), at + 1)
             if at < 0:
-                return
+                break
             continue
+        is_damaged = False
         yield utime, data[at + 28:at + 28 + name].decode("ascii", "replace"), data[at + 28 + name:end]
         at = end
+    damaged += not is_damaged and at != len(data)  # The file ends within a header.
+    if damaged:
+        warnings.warn(f"{path}: {damaged} damaged stretches, cut off or overwritten; what they held is missing")
 
 
 def read_log(path, types):

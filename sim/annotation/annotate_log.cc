@@ -189,6 +189,7 @@ class Annotation {
       if (is_first) first_us_ = ToMicros(event.received);
       is_first = false;
     }
+    result_.damaged = reader->damaged();
     return true;
   }
 

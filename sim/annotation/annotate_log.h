@@ -25,6 +25,7 @@ struct AnnotationResult {
   bool has_images = false;    ///< False: the log has boxes only.
   bool has_other_lists = false;  ///< Lists of another version of track_list_t: not drawn.
   bool has_lists = false;  ///< False: no TRACKS_LOCAL and no TRACKS_PRIORITY, so no track is drawn.
+  std::int64_t damaged = 0;     ///< Stretches of the log.
   bool is_bad_request = false;  ///< The vehicle file or the camera's name is wrong, not the log.
 };
 

@@ -63,13 +63,14 @@ class Runner {
 
 }  // namespace
 
-bool RunBaseline(const std::string& in, const VehicleConfig& vehicle,
-                 const std::string& vehicle_yaml, const std::string& out, std::string& error) {
+std::optional<std::int64_t> RunBaseline(const std::string& in, const VehicleConfig& vehicle,
+                                        const std::string& vehicle_yaml, const std::string& out,
+                                        std::string& error) {
   const auto reader = LogReader::Open(in, error);
-  if (reader == nullptr) return false;
+  if (reader == nullptr) return std::nullopt;
   const std::string inputs[] = {in};
   const auto writer = LogWriter::Create(out, error, inputs);
-  if (writer == nullptr) return false;
+  if (writer == nullptr) return std::nullopt;
   Runner runner(vehicle, *writer);
   LogEvent event;
   bool is_first = true;
@@ -86,7 +87,8 @@ bool RunBaseline(const std::string& in, const VehicleConfig& vehicle,
     is_first = false;
     runner.Take(event);
   }
-  return writer->Close(error);
+  if (!writer->Close(error)) return std::nullopt;
+  return reader->damaged();
 }
 
 }  // namespace v2vouch::baseline

@@ -214,16 +214,17 @@ std::string WithId(const std::string& path, std::int64_t id) {
 
 }  // namespace
 
-bool Sift(const std::string& in, const VehicleConfig& vehicle, Rung rung, const std::string& out,
-          std::vector<std::string>& written, std::string& error) {
+std::optional<std::int64_t> Sift(const std::string& in, const VehicleConfig& vehicle, Rung rung,
+                                 const std::string& out, std::vector<std::string>& written,
+                                 std::string& error) {
   evaluation::RunLog log;
-  if (!evaluation::ReadRunLog(in, {}, log, error)) return false;
+  if (!evaluation::ReadRunLog(in, {}, log, error)) return std::nullopt;
   if (log.truth.empty()) {
     error = in + ": holds no TRUTH";
-    return false;
+    return std::nullopt;
   }
   const auto reader = LogReader::Open(in, error);
-  if (reader == nullptr) return false;
+  if (reader == nullptr) return std::nullopt;
   Sifter sifter(log.truth, vehicle, rung);
   LogEvent event;
   while (reader->Next(event)) sifter.Take(event);
@@ -231,10 +232,10 @@ bool Sift(const std::string& in, const VehicleConfig& vehicle, Rung rung, const 
       rung == Rung::kAssociation ? sifter.Seen() : std::vector<std::int64_t>{kNobody};
   for (const std::int64_t id : ids) {
     const std::string path = id == kNobody ? out : WithId(out, id);
-    if (!sifter.Write(in, path, id, error)) return false;
+    if (!sifter.Write(in, path, id, error)) return std::nullopt;
     written.push_back(path);
   }
-  return true;
+  return reader->damaged();
 }
 
 }  // namespace v2vouch::ladder

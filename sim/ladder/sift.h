@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +26,10 @@ enum class Rung {
 /// Writes the log `in` as `rung` has it to `out`; for kAssociation one log for each road user with
 /// ten detections or more, `out` with `.ID` before its ending, without BSMs.
 /// @param written the files written.
-/// @return false with `error` set when a file cannot be read or written, or `in` has no TRUTH.
-bool Sift(const std::string& in, const VehicleConfig& vehicle, Rung rung, const std::string& out,
-          std::vector<std::string>& written, std::string& error);
+/// @return damaged stretches of `in`, which were skipped; nullopt with `error` set when a file
+/// cannot be read or written, or `in` has no TRUTH.
+std::optional<std::int64_t> Sift(const std::string& in, const VehicleConfig& vehicle, Rung rung,
+                                 const std::string& out, std::vector<std::string>& written,
+                                 std::string& error);
 
 }  // namespace v2vouch::ladder

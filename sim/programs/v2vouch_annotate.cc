@@ -56,6 +56,7 @@ int Run(const v2vouch::sim::AnnotationRequest& request, const std::string& folde
   if (!is_done || !error.empty()) {
     return Complain(error, result.is_bad_request ? v2vouch::kExitUsage : v2vouch::kExitFailed);
   }
+  v2vouch::NoteDamage("v2vouch-annotate", request.log, result.damaged);
   const nlohmann::ordered_json report = {{"frames", result.frames},
                                          {"pictures", result.pictures},
                                          {"unread", result.unread},

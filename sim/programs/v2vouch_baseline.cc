@@ -40,9 +40,12 @@ int main(int argc, char** argv) {
     return v2vouch::kExitUsage;
   }
   std::string error;
-  if (!v2vouch::baseline::RunBaseline(in, file.vehicle, v2vouch::config::Print(file), out, error)) {
+  const auto damaged =
+      v2vouch::baseline::RunBaseline(in, file.vehicle, v2vouch::config::Print(file), out, error);
+  if (!damaged) {
     std::fprintf(stderr, "v2vouch-baseline: %s\n", error.c_str());
     return v2vouch::kExitFailed;
   }
+  v2vouch::NoteDamage("v2vouch-baseline", in, *damaged);
   return 0;
 }

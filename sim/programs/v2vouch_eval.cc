@@ -89,9 +89,9 @@ std::vector<v2vouch::evaluation::ReportPicture> PicturesOf(const std::string& lo
   return pictures;
 }
 
-std::optional<v2vouch::evaluation::WarnScore> WarningsOf(const std::string& path) {
+std::optional<v2vouch::evaluation::WarnScore> WarningsOf(const std::string& path,
+                                                         v2vouch::evaluation::WarnRun& run) {
   using namespace v2vouch::evaluation;
-  WarnRun run;
   std::string error;
   if (RunWarnings(path, {}, run, error)) return JudgeWarnings(run);
   Complain(path + ": " + error);
@@ -133,7 +133,8 @@ int JudgeLies(const std::string& path, bool with_message_checks, bool with_warni
   }
   const SpoofRun run = JudgeSpoof(log, with_message_checks);
   if (!with_warnings) return PrintLies(run, nullptr, as_json);
-  const auto warnings = WarningsOf(path);
+  WarnRun warn_run;
+  const auto warnings = WarningsOf(path, warn_run);
   return warnings ? PrintLies(run, &*warnings, as_json) : v2vouch::kExitFailed;
 }
 
@@ -157,8 +158,10 @@ int PutReport(const std::string& folder, const std::string& html, const std::str
 
 int PrintWarnings(const std::string& path, bool as_json) {
   using namespace v2vouch::evaluation;
-  const auto score = WarningsOf(path);
+  WarnRun run;
+  const auto score = WarningsOf(path, run);
   if (!score) return v2vouch::kExitFailed;
+  v2vouch::NoteDamage("v2vouch-eval", path, run.damaged);
   std::fputs((as_json ? WarnScoreJson(*score) : WarnScoreTable(*score)).c_str(), stdout);
   return v2vouch::kExitGood;
 }

@@ -51,9 +51,12 @@ int main(int argc, char** argv) {
                                              : Rung::kExtent;
   std::vector<std::string> written;
   std::string error;
-  const bool is_good = v2vouch::ladder::Sift(in, file.vehicle, which, out, written, error);
+  const auto damaged = v2vouch::ladder::Sift(in, file.vehicle, which, out, written, error);
   for (const std::string& path : written) std::printf("%s\n", path.c_str());
-  if (is_good) return 0;
-  std::fprintf(stderr, "v2vouch-sift: %s\n", error.c_str());
-  return v2vouch::kExitFailed;
+  if (!damaged) {
+    std::fprintf(stderr, "v2vouch-sift: %s\n", error.c_str());
+    return v2vouch::kExitFailed;
+  }
+  v2vouch::NoteDamage("v2vouch-sift", in, *damaged);
+  return v2vouch::kExitGood;
 }

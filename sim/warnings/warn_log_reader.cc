@@ -183,6 +183,7 @@ bool RunWarnings(const std::string& path, const warnings::WarningsConfig& config
     RunLog log;
     if (!ReadRunLog(path, {}, log, error)) return false;
     if (error = WhyNotJudged(log); !error.empty()) return false;
+    run.damaged = log.damaged;
     run.scenario = log.specs.name;
     run.truth = std::move(log.truth);
     run.body = {log.specs.ego_length_m, log.specs.ego_width_m, log.specs.ego_centre_x_m};

@@ -31,6 +31,7 @@ struct WarnRun {
   std::vector<SaidWarnings> truth_said;           ///< Vehicles by TruthObject::id as local_id.
   warnings::EgoBody body;
   double seconds = 0.0;
+  std::int64_t damaged = 0;  ///< Stretches of the log.
 };
 
 /// The turn signal that this ego would show: left (right) where the way it goes turns by 50 degrees

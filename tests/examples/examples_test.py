@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import warnings
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "examples", "python"))
@@ -40,6 +41,30 @@ def test_a_replayed_log_reaches_the_python_consumer(folder):
     with open(tracks, "wb") as file:
         file.write(data)
     assert whole - 3 <= sum(1 for _ in v2vouch_lcm.read_events(tracks)) <= whole
+
+
+def test_the_python_reader_tells_of_a_log_that_is_cut_off_or_overwritten(folder):
+    def read(content):
+        with open(folder + "/damaged.lcm", "wb") as file:
+            file.write(content)
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            events = sum(1 for _ in v2vouch_lcm.read_events(folder + "/damaged.lcm"))
+        return events, [str(each.message) for each in told]
+
+    log = v2vouch_lcm.LogWriter(folder + "/whole.lcm")
+    for utime in range(3):
+        log.write(utime, "A", b"12345678")
+    log.close()
+    with open(folder + "/whole.lcm", "rb") as file:
+        data = file.read()
+    size = len(data) // 3
+    assert read(data) == (3, []) and read(data[:2 * size]) == (2, [])
+    for lost in range(1, size):
+        events, told = read(data[:-lost])
+        assert events == 2 and len(told) == 1 and "1 damaged stretches" in told[0], (lost, told)
+    events, told = read(data[:size] + b"\xff" * 40 + data[size + 40:])
+    assert events == 1 and len(told) == 1 and "1 damaged stretches" in told[0], told
 
 
 def test_the_consumer_merges_by_local_id_and_knows_what_it_does_not_see():
@@ -84,6 +109,14 @@ def test_an_ars408_frame_made_by_hand():
     assert (seen.rcs_dbsm, seen.track_id) == (10.0, 3)
 
 
+def test_a_candump_without_times_is_told(folder):
+    with open(folder + "/no_times.txt", "w", encoding="ascii") as file:
+        file.write("  can0  60B   [8]  03 4E 28 00 00 00 00 94\n")
+    done = subprocess.run([sys.executable, ROOT + "/examples/python/can_radar.py", "ars408", folder + "/no_times.txt",
+                           "FRONT", folder + "/radar.lcm"], capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and "-t a" in done.stderr, done
+
+
 def test_the_recorded_drive_of_a_toyota():
     folder = os.environ.get("V2VOUCH_DATA", ROOT + "/../shared/data") + "/radar/comma2k19_segment"
     if not os.path.isdir(folder):
@@ -113,6 +146,8 @@ def test_the_recorded_drive_of_a_toyota():
 def main():
     with tempfile.TemporaryDirectory() as folder:
         test_a_replayed_log_reaches_the_python_consumer(folder)
+        test_the_python_reader_tells_of_a_log_that_is_cut_off_or_overwritten(folder)
+        test_a_candump_without_times_is_told(folder)
     test_the_consumer_merges_by_local_id_and_knows_what_it_does_not_see()
     test_an_ars408_frame_made_by_hand()
     test_the_recorded_drive_of_a_toyota()

@@ -71,6 +71,7 @@ bool DetectLog(const std::string& in, const std::string& out, const DaemonConfig
     wire::EncodeDetections(*detections, camera, bytes);
     writer->Write(event.received, wire::DetectedChannel(config.lcm.channels, camera), bytes);
   }
+  result.damaged = reader->damaged();
   result.unknown_pictures.assign(unknown.begin(), unknown.end());
   return writer->Close(error);
 }

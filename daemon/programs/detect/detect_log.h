@@ -16,6 +16,7 @@ struct DetectLogResult {
   std::int64_t events = 0;
   std::int64_t pictures = 0;
   std::int64_t boxes = 0;
+  std::int64_t damaged = 0;  ///< Stretches of the log.
   ReasonCounts refused{};
   std::vector<std::string> unknown_pictures;  ///< Channels of pictures that no camera has.
 };

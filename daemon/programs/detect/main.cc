@@ -164,6 +164,7 @@ int LookAtLog(const Options& options, const DaemonConfig& config, NetworkDetecto
     return Complain(error, kExitFailed);
   }
   if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "\r\033[K");
+  NoteDamage("v2vouch-detect", options.log, result.damaged);
   std::cout << LogReport(result, options.as_json);
   const std::string why = WhyNothingSeen(result, config);
   return why.empty() ? 0 : Complain(options.log + ": " + why, kExitFailed);

@@ -200,15 +200,15 @@ std::optional<Columns> ResolveAll(const Layout& type, std::vector<std::string>& 
 
 }  // namespace
 
-std::optional<std::int64_t> WriteCsv(const std::string& log, const std::string& channel,
-                                     std::vector<std::string> fields, std::FILE* out,
-                                     std::string& error) {
+std::optional<CsvTable> WriteCsv(const std::string& log, const std::string& channel,
+                                 std::vector<std::string> fields, std::FILE* out,
+                                 std::string& error) {
   const auto reader = LogReader::Open(log, error);
   if (!reader) return std::nullopt;
   const Layout* type = nullptr;
   std::optional<Columns> columns;
   std::vector<std::string> others;
-  std::int64_t rows = 0;
+  CsvTable table;
   LogEvent event;
   while (reader->Next(event)) {
     if (event.channel != channel) {
@@ -216,9 +216,13 @@ std::optional<std::int64_t> WriteCsv(const std::string& log, const std::string& 
       continue;
     }
     const wire::WireType* found = wire::TypeOf(event.bytes);
-    if (found == nullptr || (type != nullptr && found->layout != type)) continue;
-    std::span<const std::uint8_t> bytes = std::span(event.bytes).subspan(8);
-    if (wire::Walk(*found->layout, bytes)) continue;  // Damaged.
+    std::span<const std::uint8_t> bytes(event.bytes);
+    if (found == nullptr || (type != nullptr && found->layout != type) ||
+        wire::Walk(*found->layout, bytes.subspan(8))) {
+      ++table.unreadable;
+      continue;
+    }
+    bytes = bytes.subspan(8);  // The fingerprint.
     if (type == nullptr) {
       type = found->layout;
       columns = ResolveAll(*type, fields, error);
@@ -229,21 +233,22 @@ std::optional<std::int64_t> WriteCsv(const std::string& log, const std::string& 
     }
     const Node message = ReadStruct(*type, bytes);
     const std::size_t count = columns->list ? message.fields[*columns->list].size() : 1;
-    for (std::size_t row = 0; row < count; ++row, ++rows) {
+    for (std::size_t row = 0; row < count; ++row, ++table.rows) {
       std::string line = Exact(ToMicros(event.received));
       for (const Path& path : columns->paths) {
         line += ',';
         line += ValueAt(message, path, row);
       }
       line += '\n';
-      if (std::fputs(line.c_str(), out) < 0) return rows;
+      if (std::fputs(line.c_str(), out) < 0) return table;
     }
   }
   if (type == nullptr) {
     error = channel + ": no message of a known type in " + log + DidYouMean(channel, others);
     return std::nullopt;
   }
-  return rows;
+  table.damaged = reader->damaged();
+  return table;
 }
 
 }  // namespace v2vouch

@@ -18,12 +18,6 @@ bool FitsAny(const std::string& name, const std::vector<std::string>& patterns) 
                              [&](const std::string& each) { return FitsPattern(name, each); });
 }
 
-// Closes, and tells what went wrong on the way; a pipe that is gone included.
-std::optional<std::int64_t> Finish(LogWriter& writer, std::int64_t count, std::string& error) {
-  if (!writer.Close(error)) return std::nullopt;
-  return count;
-}
-
 // Whether no event was recorded before the one in front of it; nullopt where it cannot be read.
 std::optional<bool> IsSorted(const std::string& path, std::string& error) {
   const auto reader = LogReader::Open(path, error);
@@ -55,6 +49,7 @@ class OrderedLog {
     return log;
   }
   [[nodiscard]] bool is_over() const { return is_over_; }
+  [[nodiscard]] std::int64_t damaged() const { return reader_->damaged(); }
   [[nodiscard]] const LogEvent& event() const { return event_; }
   void Advance() {
     if (held_.empty()) {
@@ -128,8 +123,8 @@ std::optional<LogInfo> ReadLogInfo(const std::string& path, std::string& error) 
   return info;
 }
 
-std::optional<std::int64_t> CopyLog(const std::string& in, const std::string& out,
-                                    const LogFilter& filter, std::string& error) {
+std::optional<CopiedLog> CopyLog(const std::string& in, const std::string& out,
+                                 const LogFilter& filter, std::string& error) {
   const auto reader = LogReader::Open(in, error);
   if (!reader) return std::nullopt;
   const std::vector<std::string> inputs{in};
@@ -137,7 +132,7 @@ std::optional<std::int64_t> CopyLog(const std::string& in, const std::string& ou
   if (!writer) return std::nullopt;
   LogEvent event;
   std::optional<std::int64_t> first;
-  std::int64_t count = 0;
+  CopiedLog copied;
   while (writer->is_good() && reader->Next(event)) {
     const std::int64_t utime = ToMicros(event.received);
     if (!first) first = utime;
@@ -146,13 +141,15 @@ std::optional<std::int64_t> CopyLog(const std::string& in, const std::string& ou
     if (!filter.channels.empty() && !FitsAny(event.channel, filter.channels)) continue;
     if (FitsAny(event.channel, filter.without)) continue;
     writer->Write(event.received, event.channel, event.bytes);
-    ++count;
+    ++copied.events;
   }
-  return Finish(*writer, count, error);
+  copied.damaged = {reader->damaged()};
+  if (!writer->Close(error)) return std::nullopt;  // A pipe that is gone included.
+  return copied;
 }
 
-std::optional<std::int64_t> MergeLogs(const std::vector<std::string>& in, const std::string& out,
-                                      std::string& error) {
+std::optional<CopiedLog> MergeLogs(const std::vector<std::string>& in, const std::string& out,
+                                   std::string& error) {
   std::vector<std::unique_ptr<OrderedLog>> logs;
   for (const std::string& path : in) {
     auto log = OrderedLog::Open(path, error);
@@ -166,16 +163,18 @@ std::optional<std::int64_t> MergeLogs(const std::vector<std::string>& in, const 
   for (std::size_t i = 0; i < logs.size(); ++i) {
     if (!logs[i]->is_over()) queue.emplace(ToMicros(logs[i]->event().received), i);
   }
-  std::int64_t count = 0;
+  CopiedLog copied;
   while (writer->is_good() && !queue.empty()) {
     const std::size_t i = std::get<1>(queue.top());
     queue.pop();
     writer->Write(logs[i]->event().received, logs[i]->event().channel, logs[i]->event().bytes);
-    ++count;
+    ++copied.events;
     logs[i]->Advance();
     if (!logs[i]->is_over()) queue.emplace(ToMicros(logs[i]->event().received), i);
   }
-  return Finish(*writer, count, error);
+  for (const auto& log : logs) copied.damaged.push_back(log->damaged());
+  if (!writer->Close(error)) return std::nullopt;
+  return copied;
 }
 
 }  // namespace v2vouch

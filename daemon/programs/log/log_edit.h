@@ -42,13 +42,19 @@ struct LogFilter {
 /// Whether `name` fits a pattern of letters, * and ?.
 bool FitsPattern(const std::string& name, const std::string& pattern);
 
-/// Copies what fits, bytes and times unchanged. @return number of events; nullopt with `error`.
-std::optional<std::int64_t> CopyLog(const std::string& in, const std::string& out,
-                                    const LogFilter& filter, std::string& error);
+/// What was written, and what could not be read for it.
+struct CopiedLog {
+  std::int64_t events = 0;
+  std::vector<std::int64_t> damaged;  ///< Stretches of each log that was read, in the order given.
+};
+
+/// Copies what fits, bytes and times unchanged. nullopt with `error` set where that fails.
+std::optional<CopiedLog> CopyLog(const std::string& in, const std::string& out,
+                                 const LogFilter& filter, std::string& error);
 
 /// All events of the logs in the order of their recording; equal times in the order of the files.
 /// A log that steps back in time is put in order too, held in memory for that.
-std::optional<std::int64_t> MergeLogs(const std::vector<std::string>& in, const std::string& out,
-                                      std::string& error);
+std::optional<CopiedLog> MergeLogs(const std::vector<std::string>& in, const std::string& out,
+                                   std::string& error);
 
 }  // namespace v2vouch

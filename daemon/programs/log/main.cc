@@ -154,11 +154,15 @@ std::string WhatThereIs(const Options& options) {
   return text;
 }
 
-int Told(const std::optional<std::int64_t>& count, const Options& options,
+int Told(const std::optional<v2vouch::CopiedLog>& copied, const Options& options,
          const std::string& error) {
-  if (!count) return Fail(error);
-  std::fprintf(stderr, "%" PRId64 " events\n", *count);
-  if (*count > 0) return kExitGood;
+  if (!copied) return Fail(error);
+  for (std::size_t i = 0; i < copied->damaged.size(); ++i) {
+    v2vouch::NoteDamage("v2vouch-log", options.ins.empty() ? options.in : options.ins[i],
+                        copied->damaged[i]);
+  }
+  std::fprintf(stderr, "%" PRId64 " events\n", copied->events);
+  if (copied->events > 0) return kExitGood;
   return Fail("nothing of " + options.in + " fits, so " + options.out + " is empty" +
               WhatThereIs(options));
 }
@@ -169,10 +173,17 @@ int Csv(const Options& options) {
   const std::vector<std::string> inputs{options.in};
   if (!options.out.empty()) file = v2vouch::OpenOutput(options.out, inputs, error);
   if (file == nullptr) return Fail(error);
-  const auto rows = v2vouch::WriteCsv(options.in, options.channel, options.fields, file, error);
+  const auto table = v2vouch::WriteCsv(options.in, options.channel, options.fields, file, error);
   const bool is_written = std::fflush(file) == 0 && std::ferror(file) == 0;
   if (!options.out.empty()) std::fclose(file);
-  if (!rows) return Fail(error);
+  if (!table) return Fail(error);
+  v2vouch::NoteDamage("v2vouch-log", options.in, table->damaged);
+  if (table->unreadable > 0) {
+    std::fprintf(stderr,
+                 "v2vouch-log: note: %s: %" PRId64
+                 " messages of %s, damaged or of another type, are left out\n",
+                 options.in.c_str(), table->unreadable, options.channel.c_str());
+  }
   if (options.out.empty()) return kExitGood;  // Of standard output the guard tells.
   return is_written ? kExitGood : Fail("the table cannot be written");
 }
@@ -237,8 +248,8 @@ int main(int argc, char** argv) {
   if (info->parsed()) return Info(options);
   if (csv->parsed()) return Csv(options);
   if (merge->parsed()) {
-    const auto count = v2vouch::MergeLogs(options.ins, options.out, error);
-    return Told(count, options, error);
+    const auto copied = v2vouch::MergeLogs(options.ins, options.out, error);
+    return Told(copied, options, error);
   }
   if (from->count() > 0 && to->count() > 0 && options.to_s <= options.from_s) {
     std::cerr << "v2vouch-log: --to must be above --from\n";
@@ -246,6 +257,6 @@ int main(int argc, char** argv) {
   }
   if (from->count() > 0) options.filter.from_s = options.from_s;
   if (to->count() > 0) options.filter.to_s = options.to_s;
-  const auto count = v2vouch::CopyLog(options.in, options.out, options.filter, error);
-  return Told(count, options, error);
+  const auto copied = v2vouch::CopyLog(options.in, options.out, options.filter, error);
+  return Told(copied, options, error);
 }

@@ -82,6 +82,7 @@ int main(int argc, char** argv) {
     std::cerr << "v2vouch-replay: " << error << '\n';
     return 1;
   }
+  v2vouch::NoteDamage("v2vouch-replay", in, result.damaged);
   std::cout << (wants_json ? v2vouch::JsonReport(result) : v2vouch::TextReport(result));
   for (const std::string& note : result.verdict.notes) {
     std::cerr << "v2vouch-replay: note: " << note << '\n';

@@ -122,6 +122,7 @@ int SpyOnLog(const Options& options) {
   spy::Moment moment;
   moment.table = &table;
   moment.damaged = log->damaged();
+  NoteDamage("v2vouch-spy", options.log, moment.damaged);
   moment.now_us = table.last_us();
   moment.is_log = true;
   const bool is_screen = !options.once && !options.json && options.channel.empty() &&

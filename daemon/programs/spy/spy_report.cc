@@ -94,10 +94,6 @@ std::vector<std::string> RefusalLines(const Moment& moment) {
     lines.push_back(Format("%lld datagrams dropped by the kernel: raise net.core.rmem_max",
                            static_cast<long long>(moment.kernel_drops)));
   }
-  if (moment.damaged > 0) {
-    lines.push_back(
-        Format("%lld damaged stretches of the log", static_cast<long long>(moment.damaged)));
-  }
   return lines;
 }
 

@@ -130,10 +130,7 @@ int Run(const Options& options, const v2vouch::DaemonConfig& config) {
           << "v2vouch-view: note: the log holds neither TRACKS_LOCAL nor TRACKS_PRIORITY; run "
              "v2vouch-replay over it first\n";
     }
-    if (player->damaged() > 0) {
-      std::cerr << "v2vouch-view: note: " << player->damaged()
-                << " damaged stretches of the log are left out\n";
-    }
+    NoteDamage("v2vouch-view", options.log, player->damaged());
   } else {
     const std::string url = options.lcm_url.empty() ? config.lcm.url : options.lcm_url;
     live = std::make_unique<LiveSource>(url, scene.Channels());

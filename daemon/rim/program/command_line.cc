@@ -83,7 +83,7 @@ std::optional<int> ReadCommandLine(CLI::App& app, const std::string& name, int a
 void NoteDamage(const std::string& name, const std::string& path, std::int64_t damaged) {
   if (damaged == 0) return;
   std::cerr << name << ": note: " << path << ": " << damaged
-            << " damaged stretches, cut off or overwritten; what they held is not judged\n";
+            << " damaged stretches, cut off or overwritten; what they held is missing\n";
 }
 
 CLI::Validator OneOf(std::vector<std::string> words) {

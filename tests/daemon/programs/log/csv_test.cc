@@ -45,17 +45,30 @@ class Csv : public ::testing::Test {
     std::size_t size = 0;
     std::FILE* out = open_memstream(&text, &size);
     std::string error;
-    const auto rows = WriteCsv(path_, channel, fields, out, error);
+    const auto table = WriteCsv(path_, channel, fields, out, error);
     std::fclose(out);
     const std::unique_ptr<char, decltype(&std::free)> owned(text, &std::free);
-    return rows ? std::string(text, size) : error;
+    if (table) told_ = *table;
+    return table ? std::string(text, size) : error;
   }
+  CsvTable told_;
   std::string path_ = ::testing::TempDir() + "csv_test.lcm";
 };
 
 TEST_F(Csv, AllPlainFieldsWithoutBeingTold) {
   EXPECT_EQ(Table("RADAR_FRONT", {}),
             "recorded_utime,utime,seq,sensor,num_detections\n1000,7,0,\"a \"\"b\"\", c\",2\n");
+}
+
+TEST_F(Csv, TellsWhatIsNotInTheTable) {
+  const std::string whole = Table("RADAR_FRONT", {});
+  EXPECT_EQ(told_.rows, 1);
+  EXPECT_EQ(told_.unreadable, 1);
+  EXPECT_EQ(told_.damaged, 0);
+  std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 1);
+  EXPECT_EQ(Table("RADAR_FRONT", {}), whole);
+  EXPECT_EQ(told_.unreadable, 0);
+  EXPECT_EQ(told_.damaged, 1);
 }
 
 TEST_F(Csv, AListMakesARowPerElementAndNumbersAreExact) {

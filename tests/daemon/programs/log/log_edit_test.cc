@@ -43,6 +43,9 @@ class LogEdit : public ::testing::Test {
     }
     return events;
   }
+  static std::int64_t Copied(const std::optional<CopiedLog>& copied) {
+    return copied ? copied->events : -1;
+  }
   std::string error_;
   std::vector<std::string> made_;
 };
@@ -51,7 +54,7 @@ TEST_F(LogEdit, MergeIsInTheOrderOfRecordingEvenWhereALogStepsBack) {
   const auto a = Log("a", {{"A", 1}, {"A", 3}, {"A", 5}});
   const auto b = Log("b", {{"B", 4}, {"B", 2}, {"B", 3}});
   const auto out = Path("merged");
-  EXPECT_EQ(MergeLogs({a, b}, out, error_), 6);
+  EXPECT_EQ(Copied(MergeLogs({a, b}, out, error_)), 6);
   EXPECT_THAT(Events(out), ElementsAre("A1", "B2", "A3", "B3", "B4", "A5"));
   EXPECT_FALSE(MergeLogs({a, b}, a, error_)) << "an input must not be overwritten";
   EXPECT_THAT(Events(a), ElementsAre("A1", "A3", "A5"));
@@ -63,13 +66,28 @@ TEST_F(LogEdit, CutAndFilter) {
   LogFilter stretch;
   stretch.from_s = 0.1;
   stretch.to_s = 0.3;
-  EXPECT_EQ(CopyLog(in, out, stretch, error_), 2);
+  EXPECT_EQ(Copied(CopyLog(in, out, stretch, error_)), 2);
   EXPECT_THAT(Events(out), ElementsAre("BSM200", "RADAR_R300"));
   LogFilter names;
   names.channels = {"RADAR_?", "BSM"};
   names.without = {"*_R"};
-  EXPECT_EQ(CopyLog(in, out, names, error_), 2);
+  EXPECT_EQ(Copied(CopyLog(in, out, names, error_)), 2);
   EXPECT_THAT(Events(out), ElementsAre("RADAR_F100", "BSM200"));
+}
+
+TEST_F(LogEdit, ALogThatIsCutOffIsCopiedAsFarAsItGoesAndTold) {
+  const auto whole = Log("whole", {{"A", 1}, {"A", 3}});
+  const auto cut = Log("cut", {{"B", 4}, {"B", 2}, {"B", 3}});
+  std::filesystem::resize_file(cut, std::filesystem::file_size(cut) - 1);
+  const auto out = Path("copied");
+  const auto merged = MergeLogs({whole, cut}, out, error_);
+  ASSERT_TRUE(merged) << error_;
+  EXPECT_THAT(Events(out), ElementsAre("A1", "B2", "A3", "B4"));
+  EXPECT_THAT(merged->damaged, ElementsAre(0, 1));
+  const auto copied = CopyLog(cut, out, {}, error_);
+  ASSERT_TRUE(copied) << error_;
+  EXPECT_THAT(Events(out), ElementsAre("B4", "B2"));
+  EXPECT_THAT(copied->damaged, ElementsAre(1));
 }
 
 TEST_F(LogEdit, PatternsFitWholeNames) {
