@@ -9,6 +9,7 @@
 #include "daemon/v2v/perception/claimed_size.h"
 #include "daemon/v2v/perception/evidence.h"
 #include "daemon/v2v/perception/reappearance.h"
+#include "daemon/v2v/trust/checks.h"
 
 namespace v2vouch {
 namespace {
@@ -157,6 +158,9 @@ VehicleStep StepVehicle(const V2vView& view, PriorityVehicle& vehicle, const Loc
     // Sensors and sender had come apart by more than any bias: there is nothing to carry on.
     const double most_m = kMostBias * view.config.filter.max_bias_m;
     if (vehicle.filter.bias().norm() > most_m) return end();
+    // A sender that was leaving its vehicle would take the bridge along.
+    const SenderRecord* record = view.senders.Find(vehicle.sender);
+    if (record != nullptr && IsWalkingOff(record->trust.history(), view.config.trust)) return end();
     BeginBridge(vehicle);
     step.is_lost = true;
   }

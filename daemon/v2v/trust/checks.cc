@@ -8,7 +8,8 @@ namespace v2vouch {
 namespace {
 
 constexpr double kJitter_s = 0.05;  // Of a position's time, from message to message.
-// Of a false velocity, by which the residual of the position must move with it.
+// Of a false velocity, by which the residual of the position must move with it; and of such a move,
+// by which the two may differ.
 constexpr double kConfirmedShare = 0.5;
 // Share of the ego's own pose error that may come and go within ten seconds.
 constexpr double kAlignmentDrift = 0.3;
@@ -101,6 +102,9 @@ void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& c
     yaw_sigma_ += w_yaw * (observation.yaw_sigma_rad - yaw_sigma_);
     has_yaw_ = true;
   }
+  if (observation.velocity_residual_O && dt_s <= 1.0) {
+    walked_ += dt_s * *observation.velocity_residual_O;
+  }
   if (!has_any_) block_start_ = observation.stamp;
   if (ToSeconds(observation.stamp - block_start_) >= 1.0 && block_size_ > 0) {
     blocks_[block_count_++ % kBlocks] = block_sum_ / block_size_;
@@ -108,8 +112,8 @@ void ResidualHistory::Add(const CoObservation& observation, const TrustConfig& c
     block_size_ = 0;
     block_start_ = observation.stamp;
   }
-  block_sum_ += Eigen::Vector3d(observation.residual_O.x(), observation.residual_O.y(),
-                                observation.track_speed_mps);
+  block_sum_ +=
+      (Block() << observation.residual_O, observation.track_speed_mps, walked_).finished();
   ++block_size_;
   has_any_ = true;
   last_ = observation.stamp;
@@ -133,7 +137,12 @@ double ResidualHistory::reference_speed_mps() const {
   return block_count_ < 2 ? 0.0 : Reference().z();
 }
 
-Eigen::Vector3d ResidualHistory::Reference() const {
+std::optional<Eigen::Vector2d> ResidualHistory::walked_O() const {
+  if (block_count_ < 2) return std::nullopt;
+  return walked_ - Reference().tail<2>();
+}
+
+ResidualHistory::Block ResidualHistory::Reference() const {
   const std::uint64_t oldest = block_count_ > kBlocks ? block_count_ - kBlocks : 0;
   return 0.5 * (blocks_[oldest % kBlocks] + blocks_[(oldest + 1) % kBlocks]);
 }
@@ -227,6 +236,17 @@ std::optional<Finding> CheckAcceleration(const ResidualHistory& history, const C
   if (std::abs(history.accel_mps2()) <= limit_mps2) return std::nullopt;
   return Finding{Check::kAccelerationResidual, Verdict::kWithdraw, "acceleration_residual_mps2",
                  history.accel_mps2(), limit_mps2};
+}
+
+bool IsWalkingOff(const ResidualHistory& history, const TrustConfig& config) {
+  const auto reference_O = history.reference_O();
+  const auto walked_O = history.walked_O();
+  if (!reference_O || !walked_O) return false;
+  const Eigen::Vector2d moved_O = history.fast_mean_O() - *reference_O;
+  const double walked_m = walked_O->norm();
+  const double limit_m = config.leaving_m + 2.0 * history.sensed_sigma_m();
+  if (walked_m <= limit_m || moved_O.dot(*walked_O) <= limit_m * walked_m) return false;
+  return (moved_O - *walked_O).norm() <= kConfirmedShare * moved_O.norm();
 }
 
 bool IsSizePlausible(const std::optional<double>& length_m, const std::optional<double>& width_m,

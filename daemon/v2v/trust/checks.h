@@ -78,6 +78,8 @@ class ResidualHistory {
   [[nodiscard]] std::optional<Eigen::Vector2d> reference_O() const;
   /// The track's speed then; 0 where there is no reference.
   [[nodiscard]] double reference_speed_mps() const;
+  /// By how much the claimed and the sensed velocity alone have parted the two since then [m].
+  [[nodiscard]] std::optional<Eigen::Vector2d> walked_O() const;
 
  private:
   static constexpr std::size_t kBlocks = 12;
@@ -98,11 +100,13 @@ class ResidualHistory {
   double speed_ = 0.0, speed_sigma_ = 0.0, yaw_ = 0.0, yaw_sigma_ = 0.0;
   double accel_ = 0.0, accel_sigma_ = 0.0;
   double sensed_sigma_ = 0.0, extent_sigma_ = 0.0;
-  std::array<Eigen::Vector3d, kBlocks> blocks_{};  // Means by second, ring: residual, speed.
+  Eigen::Vector2d walked_ = Eigen::Vector2d::Zero();  // Integral of the velocity residual.
+  using Block = Eigen::Matrix<double, 5, 1>;          // Residual, the track's speed, walked_.
+  std::array<Block, kBlocks> blocks_{};               // Means by second, ring.
   std::uint64_t block_count_ = 0;
   Timestamp block_start_{};
-  [[nodiscard]] Eigen::Vector3d Reference() const;  // Of at least two blocks.
-  Eigen::Vector3d block_sum_ = Eigen::Vector3d::Zero();
+  [[nodiscard]] Block Reference() const;  // Of at least two blocks.
+  Block block_sum_ = Block::Zero();
   int block_size_ = 0;
 };
 
@@ -129,6 +133,12 @@ std::optional<Finding> CheckVelocity(const ResidualHistory& history, const CoObs
 /// hard braking late, so a shorter disagreement says nothing.
 std::optional<Finding> CheckAcceleration(const ResidualHistory& history, const CoObservation& now,
                                          const TrustConfig& config);
+/// Whether the sender walks off its vehicle: by leaving_m its residual has moved from where it was
+/// ten seconds ago, and the claimed velocity has parted it from the sensed one by as much, the same
+/// way. A receiver's error wanders without a velocity, and a false velocity alone moves nothing.
+/// Both grow by twice the sensors' own sigma. No reason for blame, as the sensors may have followed
+/// the wrong reflections; but nothing that a bridge may rest on.
+bool IsWalkingOff(const ResidualHistory& history, const TrustConfig& config);
 /// plausible size: whether claimed and sensed size can be of one vehicle. Twice the sensors' own
 /// sigma is allowed beside the mismatch; a size that is not claimed fits.
 bool IsSizePlausible(const std::optional<double>& length_m, const std::optional<double>& width_m,

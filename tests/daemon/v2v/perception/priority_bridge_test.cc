@@ -39,6 +39,28 @@ TEST(PriorityBridge, BridgesFourSecondsAndTakesTheVehicleBackUnderItsId) {
   EXPECT_LT(std::sqrt(squared / count), 0.6);
 }
 
+// A sender leaves its vehicle to the side, at 1 m/s and with the heading to match, and after 2.5 s
+// the vehicle is hidden: too early to withdraw it, but it would take the bridge along.
+TEST(PriorityBridge, NoBridgeFollowsASenderThatWasWalkingOff) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Scene scene = Validated(seed);
+    double aside_m = 0.0;
+    const auto walk = [&] {
+      aside_m += kFrame_s * 1.0;
+      if (scene.frames % 2 != 0) return;
+      const Car& car = scene.cars[0];
+      scene.Say(1, car.p + Eigen::Vector2d(1.0, -0.8 - aside_m), car.yaw_rad + 0.2, car.speed_mps);
+    };
+    scene.Run(2.5, walk);
+    ASSERT_EQ(scene.Priority().size(), 1u) << "seed " << seed;
+    EXPECT_TRUE(scene.outputs.reports.empty()) << "seed " << seed;
+    Hide(scene);
+    scene.Run(0.5, walk);
+    EXPECT_TRUE(scene.Priority().empty()) << "seed " << seed;
+    EXPECT_TRUE(scene.outputs.reports.empty()) << "seed " << seed;
+  }
+}
+
 // A new LOCAL track, 6.5 m from the bridge but where the sensors alone may expect the hidden car: a
 // few stray hits say nothing, a run says that the car is there.
 TEST(PriorityBridge, StrayHitsElsewhereEndNoBridge) {

@@ -49,6 +49,35 @@ TEST(SenderTrust, WalkingOffIsNoTear) {
   EXPECT_EQ(trust.state(), TrustState::kSuspect) << "by its level";
 }
 
+// Leaves its vehicle at `moved_mps` and says that it does so at `said_mps`.
+bool WalksOff(double moved_mps, double said_mps, double for_s) {
+  SenderTrust trust = Validated();
+  const auto residual = [](double moved_m, double said) {
+    CoObservation observation = Residual(0.0, 1.0 + moved_m);
+    observation.velocity_residual_O = Eigen::Vector2d(0.0, said);
+    return observation;
+  };
+  RunUntilVerdict(
+      trust, 0.0, 5.0, [&](double) { return residual(0.0, 0.0); }, Verdict::kWithdraw);
+  const double withdrawn_s = RunUntilVerdict(
+      trust, 5.0, for_s, [&](double s) { return residual(moved_mps * s, said_mps); },
+      Verdict::kWithdraw);
+  EXPECT_TRUE(std::isnan(withdrawn_s));
+  return IsWalkingOff(trust.history(), kConfig);
+}
+
+TEST(Checks, ASenderThatWalksOffIsKnownBeforeItIsWithdrawn) {
+  EXPECT_FALSE(WalksOff(0.0, 0.0, 3.0));
+  EXPECT_TRUE(WalksOff(1.0, 1.0, 2.2));
+  EXPECT_TRUE(WalksOff(0.5, 0.5, 4.5));
+}
+
+TEST(Checks, AReceiverThatWandersOrErrsInItsHeadingDoesNotWalkOff) {
+  EXPECT_FALSE(WalksOff(0.5, 0.0, 4.5)) << "a bias that wanders";
+  EXPECT_FALSE(WalksOff(0.0, 0.5, 4.5)) << "a heading that is off";
+  EXPECT_FALSE(WalksOff(0.5, -0.5, 4.5));
+}
+
 TEST(SenderTrust, AShiftThatAllShareIsNotTheSendersFault) {
   const auto shifted = [](double) {
     CoObservation observation = Residual(6.0, 0.0);
