@@ -31,6 +31,10 @@ constexpr double kFloor_m = 0.1;
 // The middle of a picture's box slides over the body while the line of sight turns, from the tail
 // round a corner to the far end of the flank: so far per radian, 1 sigma.
 constexpr double kSlide_m = 2.0;
+// With Doppler as well, half as far, and only where the velocity is small: what drives past has a
+// clear direction.
+constexpr double kSlideWithDoppler_m = 1.0;
+constexpr double kCreeping_mps = 4.0;
 // A silhouette wider than this shows a side, unless a lorry's.
 constexpr double kWidestCar_m = 3.2;
 
@@ -40,7 +44,7 @@ TrackFilter TrackFilter::FromRadar(const RadarLook& look, const RadarMeasurement
                                    const FilterSettings& settings) {
   TrackFilter filter;
   filter.point_ = PointFilter::FromRadar(look, z, settings.point_targets);
-  filter.NoteDoppler(z);
+  filter.Note(z);
   filter.seen_from_ = look.origin_O();
   filter.default_yaw_rad_ = look.ego.X_OB.yaw_rad();
   return filter;
@@ -88,19 +92,19 @@ bool TrackFilter::Update(const Look& look, const Measurement& z, const FilterSet
   sensor_velocity_ = look.ego.X_OB.rotation() * Eigen::Vector2d(look.ego.speed_mps, 0.0);
   if (!is_vehicle_) {
     if (!point_.Update(look, z, settings.point_targets)) return false;
-    NoteDoppler(z);
+    Note(z);
     PromoteIfClear(settings);
     return true;
   }
   if (moves_in_pictures_) {
-    NoteDoppler(z);
+    Note(z);
     if (doppler_ == Doppler::kNone) return StandStill(look, z);
     moves_in_pictures_ = doppler_ == Doppler::kUnseen;
   }
   return vehicle_.Update(look, z, age_s_ < kYoung_s, settings);
 }
 
-void TrackFilter::NoteDoppler(const RadarMeasurement& z) {
+void TrackFilter::Note(const RadarMeasurement& z) {
   if (doppler_ != Doppler::kMoving) doppler_ = z.is_static ? Doppler::kNone : Doppler::kMoving;
 }
 
@@ -148,15 +152,17 @@ void TrackFilter::SetClass(ObjectClass object_class) {
   object_class_ = object_class;
 }
 
-// The point with the doubt that passing it leaves in a velocity which only pictures have seen.
+// The point with the doubt that passing it leaves in the velocity.
 PointFilter TrackFilter::SlidingPoint(const FilterSettings& settings) const {
-  if (settings.point_targets || doppler_ == Doppler::kMoving) return point_;
+  const bool drives = doppler_ == Doppler::kMoving;
+  const bool is_clear = drives && (!has_pictures_ || point_.velocity().norm() > kCreeping_mps);
+  if (settings.point_targets || is_clear) return point_;
   const Eigen::Vector2d line = point_.position() - seen_from_;
   const Eigen::Vector2d passing = point_.velocity() - sensor_velocity_;
   const double range_m = std::max(line.norm(), 1.0);
   const double turn_radps =
       std::abs(line.x() * passing.y() - line.y() * passing.x()) / (range_m * range_m);
-  return point_.Doubted(kSlide_m * turn_radps);
+  return point_.Doubted((drives ? kSlideWithDoppler_m : kSlide_m) * turn_radps);
 }
 
 ExtendedState TrackFilter::ShowPoint(const FilterSettings& settings) const {

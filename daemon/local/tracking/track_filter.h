@@ -86,8 +86,8 @@ class TrackFilter {
  private:
   enum class Doppler { kUnseen, kNone, kMoving };  // What radars have shown of it so far.
 
-  void NoteDoppler(const RadarMeasurement& z);
-  void NoteDoppler(const CameraMeasurement&) {}
+  void Note(const RadarMeasurement& z);
+  void Note(const CameraMeasurement&) { has_pictures_ = true; }
   bool StandStill(const RadarLook& look, const RadarMeasurement& z);
   bool StandStill(const CameraLook&, const CameraMeasurement&) { return true; }
   [[nodiscard]] bool HasDirection(const PointFilter& point, double max_sigma_rad,
@@ -98,6 +98,7 @@ class TrackFilter {
 
   bool is_vehicle_ = false;
   Doppler doppler_ = Doppler::kUnseen;
+  bool has_pictures_ = false;
   bool moves_in_pictures_ = false;  // A vehicle whose motion no radar has confirmed.
   double age_s_ = 0.0;
   PointFilter point_;  // Until it is a vehicle.
