@@ -11,7 +11,6 @@ namespace {
 
 // Beyond this sigma of the heading no list claims to know the axis.
 constexpr double kUnknownAxis_rad = 0.5;
-
 constexpr double kSameDirection_rad = 0.786;  // 45 degrees
 constexpr double kOncoming_rad = 2.356;       // 135 degrees
 // Comes nearer across the path: a change of lanes takes 1 to 1.5 m/s.
@@ -37,8 +36,6 @@ BodyTarget InBody(const Target& target, const Eigen::Vector2d& ego_p_O, double e
   out.mean[kYaw] = WrapAngle(mean[kYaw] - ego_yaw_O);
   out.covariance = turn * target.state_O.covariance * turn.transpose();
   out.size = {0.5 * target.extent.length_m, 0.5 * target.extent.width_m};
-  // Of a body that may lie along any axis, only the part round its middle is where every axis has
-  // it.
   if (out.covariance(kYaw, kYaw) > kUnknownAxis_rad * kUnknownAxis_rad) {
     out.size.length_m = std::min(out.size.length_m, out.size.width_m);
   }

@@ -10,7 +10,9 @@ namespace v2vouch::warnings {
 /// A vehicle slower than this stands: no direction of motion is taken from it.
 inline constexpr double kTargetStands_mps = 1.0;
 
-/// A listed vehicle in the body frame of an ego at `ego_p_O`, `ego_yaw_O`.
+/// A listed vehicle in the body frame of an ego at `ego_p_O`, `ego_yaw_O`. Where no list claims to
+/// know its axis (sigma of the heading above 0.5 rad) its size is that of its middle, which is
+/// there along every axis.
 BodyTarget InBody(const Target& target, const Eigen::Vector2d& ego_p_O, double ego_yaw_O);
 
 /// A box well inside the ego's own: contact already, or a track of nothing; no warning helps.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/warnings/warner.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,14 +8,18 @@
 
 #include "daemon/common/base/angle.h"
 #include "daemon/warnings/merge_lists.h"
+#include "daemon/warnings/placement.h"
 
 namespace v2vouch::warnings {
 namespace {
 
 constexpr std::size_t Index(Level level) { return static_cast<std::size_t>(level) - 1; }
 
-bool IsSameVehicle(const Warning& a, std::int64_t track_id, std::int64_t local_id) {
-  return (a.track_id != 0 && a.track_id == track_id) || (a.local_id != 0 && a.local_id == local_id);
+// Of warnings, targets and their pasts: by either list's id.
+template <class A, class B>
+bool IsSameVehicle(const A& a, const B& b) {
+  return (a.track_id != 0 && a.track_id == b.track_id) ||
+         (a.local_id != 0 && a.local_id == b.local_id);
 }
 
 // The best state of a sector that holds this bearing out to this range.
@@ -177,9 +180,7 @@ WarningList Warner::Make() {
 // What is held goes with its vehicle, and one vehicle has one warning of a kind, also where it was
 // in two lists unconnected until now.
 void Warner::Follow(const Target& target, const Scene& scene) {
-  const auto is_its = [&target](const Entry& entry) {
-    return IsSameVehicle(entry.shown, target.track_id, target.local_id);
-  };
+  const auto is_its = [&target](const Entry& entry) { return IsSameVehicle(entry.shown, target); };
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (!is_its(entries_[i])) continue;
     for (std::size_t j = entries_.size(); j-- > i + 1;) {
@@ -194,9 +195,9 @@ void Warner::Follow(const Target& target, const Scene& scene) {
     if (target.local_id != 0) shown.local_id = target.local_id;
     shown.source = target.source;
     shown.visibility = target.visibility;
-    const StateVector& x = target.state_O.mean;
-    shown.figures.position_B = Eigen::Rotation2Dd(-scene.ego_yaw_O) * (x.head<2>() - scene.ego_p_O);
-    shown.figures.speed_mps = x[kSpeed];
+    const StateVector now = InBody(target, scene.ego_p_O, scene.ego_yaw_O).mean;
+    shown.figures.position_B = now.head<2>();
+    shown.figures.speed_mps = now[kSpeed];
   }
 }
 
@@ -227,10 +228,8 @@ void Warner::NoteSpeeds(std::vector<Target>& targets, Timestamp now) {
   std::vector<Past> pasts;
   pasts.reserve(targets.size());
   for (Target& target : targets) {
-    const auto known = std::ranges::find_if(pasts_, [&target](const Past& past) {
-      return (past.track_id != 0 && past.track_id == target.track_id) ||
-             (past.local_id != 0 && past.local_id == target.local_id);
-    });
+    const auto known = std::ranges::find_if(
+        pasts_, [&target](const Past& past) { return IsSameVehicle(past, target); });
     Past past = known != pasts_.end() ? std::move(*known) : Past{.first = now};
     if (known != pasts_.end()) *known = {};
     past.track_id = target.track_id;
@@ -250,10 +249,7 @@ void Warner::NoteSpeeds(std::vector<Target>& targets, Timestamp now) {
 
 Warner::Entry& Warner::EntryOf(const Warning& warning, Timestamp now) {
   for (Entry& entry : entries_) {
-    if (entry.shown.kind == warning.kind &&
-        IsSameVehicle(entry.shown, warning.track_id, warning.local_id)) {
-      return entry;
-    }
+    if (entry.shown.kind == warning.kind && IsSameVehicle(entry.shown, warning)) return entry;
   }
   Entry& entry = entries_.emplace_back();
   entry.shown = warning;

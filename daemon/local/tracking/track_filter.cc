@@ -89,7 +89,7 @@ std::optional<Likelihood> TrackFilter::Evaluate(const Look& look, const Measurem
 template <class Look, class Measurement>
 bool TrackFilter::Update(const Look& look, const Measurement& z, const FilterSettings& settings) {
   seen_from_ = look.origin_O();
-  sensor_velocity_ = look.ego.X_OB.rotation() * Eigen::Vector2d(look.ego.speed_mps, 0.0);
+  ego_velocity_ = look.ego.X_OB.rotation() * Eigen::Vector2d(look.ego.speed_mps, 0.0);
   if (!is_vehicle_) {
     if (!point_.Update(look, z, settings.point_targets)) return false;
     Note(z);
@@ -158,7 +158,7 @@ PointFilter TrackFilter::SlidingPoint(const FilterSettings& settings) const {
   const bool is_clear = drives && (!has_pictures_ || point_.velocity().norm() > kCreeping_mps);
   if (settings.point_targets || is_clear) return point_;
   const Eigen::Vector2d line = point_.position() - seen_from_;
-  const Eigen::Vector2d passing = point_.velocity() - sensor_velocity_;
+  const Eigen::Vector2d passing = point_.velocity() - ego_velocity_;
   const double range_m = std::max(line.norm(), 1.0);
   const double turn_radps =
       std::abs(line.x() * passing.y() - line.y() * passing.x()) / (range_m * range_m);

@@ -103,8 +103,8 @@ class TrackFilter {
   double age_s_ = 0.0;
   PointFilter point_;  // Until it is a vehicle.
   VehicleFilter vehicle_;
-  Eigen::Vector2d seen_from_ = Eigen::Vector2d::Zero();        // Last sensor that saw it, in O.
-  Eigen::Vector2d sensor_velocity_ = Eigen::Vector2d::Zero();  // Of the same, in O.
+  Eigen::Vector2d seen_from_ = Eigen::Vector2d::Zero();     // Last sensor that saw it, in O.
+  Eigen::Vector2d ego_velocity_ = Eigen::Vector2d::Zero();  // Of the ego then, in O.
   double default_yaw_rad_ = 0.0;
   ObjectClass object_class_ = ObjectClass::kUnknown;
 };
