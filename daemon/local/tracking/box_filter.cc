@@ -146,7 +146,7 @@ bool VehicleFilter::Update(const BoxMeasurement& z) {
 
 TrackFilter TrackFilter::FromBox(const BoxMeasurement& z) {
   TrackFilter filter;
-  filter.is_vehicle_ = true;
+  filter.is_vehicle_ = filter.is_measured_whole_ = true;
   filter.vehicle_.StartAt(z);
   filter.default_yaw_rad_ = WrapAngle(z.yaw_rad);
   return filter;
@@ -169,7 +169,7 @@ bool TrackFilter::Update(const BoxMeasurement& z) {
   const double variance = is_vehicle_ ? vehicle_.best().covariance(kSpeed, kSpeed)
                                       : 0.5 * point_.covariance().bottomRightCorner<2, 2>().trace();
   vehicle_.StartAt(z);
-  is_vehicle_ = true;
+  is_vehicle_ = is_measured_whole_ = true;
   if (z.velocity_O_mps) return true;
   const double sigma_mps = std::sqrt(std::max(variance, 0.0));
   if (sigma_mps < kInitialSpeedSigma_mps) {

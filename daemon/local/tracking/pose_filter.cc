@@ -37,7 +37,7 @@ bool VehicleFilter::Update(const PoseMeasurement& z) {
 
 TrackFilter TrackFilter::FromPose(const PoseMeasurement& z) {
   TrackFilter filter;
-  filter.is_vehicle_ = true;
+  filter.is_vehicle_ = filter.is_measured_whole_ = true;
   filter.vehicle_.StartAt(z, ClassExtent(filter.object_class_));
   filter.default_yaw_rad_ = WrapAngle(z.yaw_rad);
   return filter;
@@ -77,7 +77,7 @@ std::optional<Likelihood> TrackFilter::Evaluate(const PoseMeasurement& z,
 bool TrackFilter::Update(const PoseMeasurement& z) {
   if (knows_direction()) return vehicle_.Update(z);
   vehicle_.StartAt(z, is_vehicle_ ? vehicle_.best().extent() : ClassExtent(object_class_));
-  is_vehicle_ = true;
+  is_vehicle_ = is_measured_whole_ = true;
   return true;
 }
 

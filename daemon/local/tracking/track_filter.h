@@ -95,8 +95,10 @@ class TrackFilter {
   void PromoteIfClear(const FilterSettings& settings);
   [[nodiscard]] PointFilter SlidingPoint(const FilterSettings& settings) const;
   [[nodiscard]] ExtendedState ShowPoint(const FilterSettings& settings) const;
+  [[nodiscard]] Eigen::Matrix2d LastingError(const ExtendedState& state) const;
 
   bool is_vehicle_ = false;
+  bool is_measured_whole_ = false;  // By a pose or a box.
   Doppler doppler_ = Doppler::kUnseen;
   bool has_pictures_ = false;
   bool moves_in_pictures_ = false;  // A vehicle whose motion no radar has confirmed.
