@@ -18,6 +18,12 @@ constexpr double kClearlyBetter = 1.5;
 // More that are not listed are not kept: every one of them costs as much as a vehicle.
 constexpr std::size_t kMostGuesses = 128;
 
+bool IsPossible(const LocalTrack& track) {
+  return track.state_O.mean.allFinite() && track.state_O.covariance.allFinite() &&
+         track.state_O.covariance.diagonal().minCoeff() >= 0.0 && track.existence >= 0.0 &&
+         track.existence <= 1.0;
+}
+
 }  // namespace
 
 std::uint64_t TrackTable::PackId(Timestamp stamp, SensorKey sensor, std::size_t index) {
@@ -58,7 +64,7 @@ double TrackTable::Predict(Timestamp stamp) {
 bool TrackTable::Show(std::size_t i) {
   LocalTrack& track = tracks_[i];
   evidence_[i].filter.Show(settings_, track);
-  if (track.state_O.mean.allFinite() && track.state_O.covariance.allFinite()) return true;
+  if (IsPossible(track)) return true;
   Fail(i);
   return false;
 }

@@ -93,6 +93,30 @@ TEST(TrackTable, AClassChangesForOneThatIsClearlyBetterSupported) {
   EXPECT_EQ(table[0].track.object_class, ObjectClass::kTruck);
 }
 
+// A sensor may send what it likes: nothing comes out that no vehicle can have.
+TEST(TrackTable, ATrackWithANegativeVarianceEnds) {
+  TrackTable table = Table();
+  PoseMeasurement z{.x_m = 10.0};
+  z.covariance.diagonal() << 0.25, 0.25, 0.0025, -0.25, 0.0004;
+  ASSERT_TRUE(table.Start(TrackFilter::FromPose(z), {SensorKind::kObjects, 0}, 0, 0.2));
+  table.Judge();
+  table.EndStep();
+  EXPECT_EQ(table.size(), 0u);
+  ASSERT_EQ(table.faults().size(), 1u);
+  EXPECT_EQ(table.faults()[0], Reason::kTrackNumerics);
+}
+
+TEST(TrackTable, ATrackWithAnImpossibleExistenceEnds) {
+  for (const double existence : {std::numeric_limits<double>::quiet_NaN(), -0.1, 1.1}) {
+    TrackTable table = Table();
+    ASSERT_TRUE(table.Start(CarAt(0.0), {SensorKind::kRadar, 0}, 0, 0.2));
+    table[0].track.existence = existence;
+    table.Judge();
+    table.EndStep();
+    EXPECT_EQ(table.size(), 0u) << existence;
+  }
+}
+
 TEST(TrackTable, ATrackWithoutAFiniteStateEnds) {
   TrackTable table = Table();
   ASSERT_TRUE(table.Start(CarAt(std::numeric_limits<double>::quiet_NaN()), {SensorKind::kRadar, 0},
