@@ -21,8 +21,8 @@ struct Honesty {
   int lists = 0;
 };
 
-// Cars in view of sensors that are mounted otherwise than the configuration says. The ego stands, or
-// follows them.
+// Cars in view of sensors that are mounted otherwise than the configuration says. The ego stands,
+// or follows them.
 Honesty Watch(double speed_mps) {
   Honesty out;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
