@@ -13,6 +13,10 @@ namespace {
 
 // Heading sigma for becoming a vehicle, and for being shown as one.
 constexpr double kDirectedSigma_rad = 0.15;
+// What drives slowly shows its direction late. It becomes a vehicle before it is passed, since only
+// of a vehicle is it known how what shows of it slides from the tail to the flank.
+constexpr double kLateSigma_rad = 0.3;
+constexpr double kLongKnown_s = 2.0;
 constexpr double kShownSigma_rad = 0.6;
 // Sigma of the speed over the speed: five standard deviations from standing for good, three until
 // the next list.
@@ -135,7 +139,8 @@ void TrackFilter::PromoteIfClear(const FilterSettings& settings) {
   const ObjectClass first = IsLong(object_class_) ? ObjectClass::kUnknown : object_class_;
   const Extent size = ClassExtent(first);
   const PointFilter point = SlidingPoint(settings);
-  if (HasDirection(point, kDirectedSigma_rad, kDirectedShare)) {
+  const bool is_known_long = has_pictures_ && doppler_ == Doppler::kMoving && age_s_ > kLongKnown_s;
+  if (HasDirection(point, is_known_long ? kLateSigma_rad : kDirectedSigma_rad, kDirectedShare)) {
     vehicle_.StartMoving(point, size, seen_from_, settings);
     is_vehicle_ = true;
     moves_in_pictures_ = doppler_ == Doppler::kUnseen;

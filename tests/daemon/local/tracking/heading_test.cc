@@ -256,5 +256,35 @@ TEST(Heading, StandingCarsThatArePassedCloselyDoNotSeemToCreepAcross) {
   EXPECT_LT(creeping, judged / 50);
 }
 
+// So does what is seen of a queue that creeps in the next lane while it is passed.
+TEST(Heading, SlowCarsThatArePassedCloselyDoNotSeemToTurnIn) {
+  int judged = 0, turning = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Scene scene(seed);
+    scene.vehicle = OneRadarOneCamera();
+    scene.ego.speed_mps = 14.0;
+    for (int i = 0; i < 5; ++i) {
+      scene.cars.push_back({.p_W = {60.0 + 8.0 * i, 3.0}, .speed_mps = 2.0});
+    }
+    Tracker tracker(TrackerConfig{}, scene.vehicle);
+    for (int step = 0; step < 150; ++step) {
+      scene.Advance(kStep_s);
+      // Cars of a queue hide each other: one scan of four shows them.
+      if (step % 4 == 0) scene.Radar(tracker);
+      if (step % 2 == 1) scene.Camera(tracker);
+      for (const LocalTrack& track : tracker.tracks()) {
+        const StateVector& x = track.state_O.mean;
+        if (!track.is_confirmed || x[kX] > scene.ego.p_W.x() + 25.0) continue;
+        ++judged;
+        const double sigma = std::sqrt(track.state_O.covariance(kYaw, kYaw));
+        turning += sigma < 0.25 && std::abs(std::sin(x[kYaw])) > std::sin(FromDegrees(15.0));
+      }
+    }
+  }
+  std::printf("passed slowly: %d of %d lists turn in\n", turning, judged);
+  ASSERT_GT(judged, 500);
+  EXPECT_LT(turning, judged / 300);
+}
+
 }  // namespace
 }  // namespace v2vouch
