@@ -153,6 +153,14 @@ bool IsThere(const Job& job, const RunnerSettings& settings) {
 
 }  // namespace
 
+std::vector<std::string> MissingPrograms(const RunnerSettings& settings) {
+  std::vector<std::string> missing;
+  for (const char* const name : {"v2vouch-sim", "v2vouch-replay", "v2vouch-eval"}) {
+    if (access((settings.programs / name).c_str(), X_OK) != 0) missing.emplace_back(name);
+  }
+  return missing;
+}
+
 Tally RunAll(const std::vector<Job>& jobs, const RunnerSettings& settings, Children& children,
              const std::function<void(const Tally&)>& tick,
              const std::function<void(const std::string&)>& tell) {

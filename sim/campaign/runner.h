@@ -33,6 +33,9 @@ struct Tally {
   [[nodiscard]] std::size_t left() const { return total - there_before - done - failed; }
 };
 
+/// Those of the three programs that `settings.programs` does not hold or that may not be run.
+std::vector<std::string> MissingPrograms(const RunnerSettings& settings);
+
 /// Runs what is not there yet: simulator, core, scoring, each a child process, `at_a_time` runs at
 /// once. A run that fails is told to `tell` (which command, what it said) and stops no other.
 /// @param tick called about five times a second, from the calling thread; it may stop `children`,

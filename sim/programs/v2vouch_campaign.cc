@@ -142,6 +142,10 @@ int RunCampaign(const Options& options) {
   const auto jobs = PlannedJobs(options, problems);
   const fs::path out = fs::absolute(options.out);
   RunnerSettings settings = SettingsOf(options, out);
+  for (const std::string& name : MissingPrograms(settings)) {
+    problems.push_back(name + ": not in " + settings.programs.string() +
+                       ", where every run would start it: keep the programs together");
+  }
   std::error_code error;
   if (problems.empty()) {
     for (const fs::path& folder : {out / "runs", settings.scratch}) {

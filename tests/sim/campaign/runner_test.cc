@@ -79,6 +79,15 @@ class Runner : public testing::Test {
   std::vector<std::string> told_;
 };
 
+TEST_F(Runner, SaysWhichProgramsAreMissingBeforeTheFirstRun) {
+  EXPECT_THAT(MissingPrograms(settings_), IsEmpty());
+  std::filesystem::remove(folder_ / "bin" / "v2vouch-sim");
+  std::filesystem::permissions(folder_ / "bin" / "v2vouch-eval", std::filesystem::perms::none);
+  const auto missing = MissingPrograms(settings_);
+  ASSERT_FALSE(missing.empty());
+  EXPECT_EQ(missing[0], "v2vouch-sim");
+}
+
 TEST_F(Runner, EachRunLeavesOneRecordAndNoLog) {
   const auto jobs = SomeJobs(5);
   const Tally tally = Go(jobs);
