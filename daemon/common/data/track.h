@@ -50,6 +50,9 @@ struct LocalTrack {
   /// than estimated. Half a length along the vehicle where only its near face was seen, 0 where
   /// both ends were.
   Eigen::Vector2d centre_by_length_O = Eigen::Vector2d::Zero();
+  /// Of x and of y, in every list beside those of state_O: errors that are the same in look after
+  /// look. Estimates and gates do without: no innovation tells of them.
+  double lasting_variance_m2 = 0.0;
   bool is_point = false;  ///< Sensors report its centre: their models know no extent.
   ObjectClass object_class = ObjectClass::kUnknown;
   double existence = 0.0;     ///< Probability that a vehicle is there.

@@ -29,17 +29,17 @@ constexpr double kSmall_m = 2.5;
 constexpr double kAssumedYawSigma_rad = 0.7;
 // Young tracks are linearised twice: range rate bends strongly over an uncertain heading.
 constexpr double kYoung_s = 0.7;
-// Lasting errors of a centre. Of any measurement, along the vehicle and in any direction:
+// Lasting error of the reflection model, along the vehicle and in any direction.
 constexpr double kAlongFloor_m = 0.06;
 constexpr double kFloor_m = 0.1;
-// of one that was put together from reflections and edges: which part of the body shows,
-constexpr double kBody_m = 0.15;
+// Lasting errors of a centre that was put together from reflections and edges: which part of the
+// body shows,
+constexpr double kBody_m = 0.2;
 // what stands and shows the same part for as long as it does,
 constexpr double kStill_m = 0.5;
 constexpr double kStill_mps = 1.0;
-constexpr double kTown_mps = 8.0;
 // and what no picture has named, so that nobody knows how far it goes on.
-constexpr double kUnnamed_m = 0.38;
+constexpr double kUnnamed_m = 0.4;
 // The middle of a picture's box slides over the body while the line of sight turns, from the tail
 // round a corner to the far end of the flank: so far per radian, 1 sigma.
 constexpr double kSlide_m = 2.0;
@@ -197,28 +197,24 @@ ExtendedState TrackFilter::ShowPoint(const FilterSettings& settings) const {
 }
 
 // What is the same in look after look does not average out, and the filter cannot see it.
-Eigen::Matrix2d TrackFilter::LastingError(const ExtendedState& state) const {
-  const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
-  double variance = kFloor_m * kFloor_m;
-  if (!is_measured_whole_) {
-    const auto slower = [&state](double speed_mps) {
-      const double ratio = state.mean[kSpeed] / speed_mps;
-      return 1.0 / (1.0 + ratio * ratio);
-    };
-    variance += kStill_m * kStill_m * slower(kStill_mps);
-    double part = kBody_m * kBody_m;
-    if (object_class_ == ObjectClass::kUnknown) part += kUnnamed_m * kUnnamed_m;
-    variance += part * slower(kTown_mps);
-  }
-  return kAlongFloor_m * kAlongFloor_m * forward * forward.transpose() +
-         variance * Eigen::Matrix2d::Identity();
+double TrackFilter::LastingVariance(const ExtendedState& state) const {
+  if (is_measured_whole_) return 0.0;
+  const double ratio = state.mean[kSpeed] / kStill_mps;
+  double variance = kBody_m * kBody_m + kStill_m * kStill_m / (1.0 + ratio * ratio);
+  if (object_class_ == ObjectClass::kUnknown) variance += kUnnamed_m * kUnnamed_m;
+  return variance;
 }
 
 void TrackFilter::Show(const FilterSettings& settings, LocalTrack& track) const {
   const ExtendedState state = is_vehicle_ ? vehicle_.Show() : ShowPoint(settings);
   track.state_O = state.kinematic();
   if (!settings.point_targets) {
-    track.state_O.covariance.topLeftCorner<2, 2>() += LastingError(state);
+    // Where on its body a vehicle reflects is much the same from scan to scan.
+    const Eigen::Vector2d forward(std::cos(state.mean[kYaw]), std::sin(state.mean[kYaw]));
+    track.state_O.covariance.topLeftCorner<2, 2>() +=
+        kAlongFloor_m * kAlongFloor_m * forward * forward.transpose() +
+        kFloor_m * kFloor_m * Eigen::Matrix2d::Identity();
+    track.lasting_variance_m2 = LastingVariance(state);
   }
   track.extent = state.extent();
   const double length_variance = state.covariance(ExtendedState::kLength, ExtendedState::kLength);

@@ -95,7 +95,7 @@ class TrackFilter {
   void PromoteIfClear(const FilterSettings& settings);
   [[nodiscard]] PointFilter SlidingPoint(const FilterSettings& settings) const;
   [[nodiscard]] ExtendedState ShowPoint(const FilterSettings& settings) const;
-  [[nodiscard]] Eigen::Matrix2d LastingError(const ExtendedState& state) const;
+  [[nodiscard]] double LastingVariance(const ExtendedState& state) const;
 
   bool is_vehicle_ = false;
   bool is_measured_whole_ = false;  // By a pose or a box.

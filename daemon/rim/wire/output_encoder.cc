@@ -22,7 +22,8 @@ namespace {
 // Below the decoder's limit, so that nothing of ours is refused by a reader of ours.
 constexpr std::size_t kMaxTextBytes = (1u << 20) - 1;
 constexpr std::size_t kMaxTracks = 8192;
-void PutKinematics(const KinematicState& state, const Pose<Odometry, Body>& X_OB, track_t& to) {
+void PutKinematics(const LocalTrack& track, const Pose<Odometry, Body>& X_OB, track_t& to) {
+  const KinematicState& state = track.state_O;
   const StateVector& x = state.mean;
   const Point<Body> p_BT = X_OB.Inverse() * Point<Odometry>{x[kX], x[kY]};
   to.x_body_m = p_BT.x_m;
@@ -35,7 +36,8 @@ void PutKinematics(const KinematicState& state, const Pose<Odometry, Body>& X_OB
   to.yaw_rate_radps = x[kYawRate];
   to.accel_mps2 = x[kAccel];
 
-  const StateMatrix& P_O = state.covariance;
+  StateMatrix P_O = state.covariance;
+  P_O.topLeftCorner<2, 2>() += track.lasting_variance_m2 * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d R_BO = X_OB.rotation().transpose();
   StateMatrix P_B = P_O;
   P_B.topLeftCorner<2, 2>() = R_BO * P_O.topLeftCorner<2, 2>() * R_BO.transpose();
@@ -77,7 +79,7 @@ track_t ToWire(const PublishedTrack& from, const VehicleConfig& vehicle,
   to.id = static_cast<std::int64_t>(track.id);
   to.local_id = static_cast<std::int64_t>(from.local_id);
   to.start_utime = ToMicros(track.start);
-  PutKinematics(track.state_O, X_OB, to);
+  PutKinematics(track, X_OB, to);
   to.length_m = track.extent.length_m;
   to.width_m = track.extent.width_m;
   to.length_sigma_m = track.extent.length_sigma_m;

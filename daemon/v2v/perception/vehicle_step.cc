@@ -87,6 +87,7 @@ void TakeMeasurements(const V2vView& view, PriorityVehicle& vehicle, const Track
   const Eigen::Matrix2d P = track.state_O.covariance.topLeftCorner<2, 2>();
   if (!seen.is_partial) vehicle.filter.WidenPosition(P);
   vehicle.lasting = vehicle.filter.LackOf(P);
+  vehicle.lasting_variance_m2 = track.lasting_variance_m2;
   vehicle.agreed = Coast(vehicle.filter.kinematics(), frame.stamp);
 }
 

@@ -70,6 +70,7 @@ PublishedTrack LineOf(const PriorityVehicle& vehicle, Timestamp at,
   track.start = vehicle.start;
   track.state_O = vehicle.StateAt(at, filter);
   track.state_O.covariance.topLeftCorner<2, 2>() += vehicle.lasting;
+  track.lasting_variance_m2 = vehicle.lasting_variance_m2;
   track.extent = vehicle.extent;
   track.object_class = vehicle.object_class;
   track.existence = vehicle.existence;

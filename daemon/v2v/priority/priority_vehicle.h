@@ -29,6 +29,7 @@ struct PriorityVehicle {
   /// Doubt of the position beside the filter's: what LOCAL had more when it was last seen. It is
   /// published, but the filter does not follow it.
   Eigen::Matrix2d lasting = Eigen::Matrix2d::Zero();
+  double lasting_variance_m2 = 0.0;  ///< LocalTrack's, from its last support.
 
   bool is_supported = true;  ///< Sensors see it; false: bridged.
   Timestamp last_support{};

@@ -46,7 +46,8 @@ Honesty Watch(double speed_mps) {
       const LocalTrack* track = Scene::Find(tracker, scene.cars[0], 6.0);
       if (step < 100 || track == nullptr) continue;
       const Eigen::Vector2d error = track->state_O.mean.head<2>() - scene.cars[0].p_W;
-      const Eigen::Matrix2d P = track->state_O.covariance.topLeftCorner<2, 2>();
+      const Eigen::Matrix2d P = track->state_O.covariance.topLeftCorner<2, 2>() +
+                                track->lasting_variance_m2 * Eigen::Matrix2d::Identity();
       out.nees += error.dot(P.inverse() * error);
       ++out.lists;
     }
@@ -82,6 +83,7 @@ TEST(LastingError, IsNotAddedToAMeasuredBox) {
   z.length_sigma_m = z.width_sigma_m = 0.2;
   LocalTrack track;
   TrackFilter::FromBox(z).Show(FilterSettings{}, track);
+  EXPECT_EQ(track.lasting_variance_m2, 0.0);
   EXPECT_LT(track.state_O.covariance(kX, kX), 0.03);
   EXPECT_LT(track.state_O.covariance(kY, kY), 0.03);
 }
