@@ -31,6 +31,7 @@ BsmIntake::BsmIntake(const IntakeConfig& config)
   accounts_.reserve(static_cast<std::size_t>(config.max_senders));
   checks_.resize(static_cast<std::size_t>(config.max_senders));
   directions_.resize(checks_.size());
+  accuracies_.resize(checks_.size());
   free_slots_.resize(checks_.size());
   // The lowest is handed out first.
   std::iota(free_slots_.rbegin(), free_slots_.rend(), 0U);
@@ -57,6 +58,8 @@ std::optional<Reason> BsmIntake::TakeKnown(std::size_t index, const Bsm& bsm, Cl
     return Reason::kBsmRate;
   }
   account.tokens -= 1.0;
+  claim.accuracy_is_poor |=
+      accuracies_[account.slot].IsBadNow(bsm.stamp, bsm.semi_major_m, config_.max_position_sigma_m);
   const bool is_reread = directions_[account.slot].Read(bsm.transmission, claim);
   if (is_reread) checks_[account.slot].OnReread();
   if (!AdvanceSender(senders_[index], bsm, claim, is_reread)) {
@@ -73,6 +76,9 @@ std::optional<Reason> BsmIntake::TakeNew(const Bsm& bsm, Claim& claim) {
   free_slots_.pop_back();
   directions_[slot] = DirectionReading{};
   directions_[slot].Read(bsm.transmission, claim);
+  accuracies_[slot] = AccuracyWatch{};
+  claim.accuracy_is_poor |=
+      accuracies_[slot].IsBadNow(bsm.stamp, bsm.semi_major_m, config_.max_position_sigma_m);
   const auto at = static_cast<std::ptrdiff_t>(index);
   senders_.insert(senders_.begin() + at, StartSender(bsm, claim));
   checks_[slot] = SenderChecks{};

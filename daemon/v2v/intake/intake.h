@@ -13,6 +13,7 @@
 #include "daemon/common/data/input.h"
 #include "daemon/common/data/track.h"
 #include "daemon/common/geodesy/ecef.h"
+#include "daemon/v2v/intake/accuracy_watch.h"
 #include "daemon/v2v/intake/direction_reading.h"
 #include "daemon/v2v/intake/knock_memory.h"
 #include "daemon/v2v/intake/message_check_config.h"
@@ -147,7 +148,7 @@ class BsmIntake {
   struct Account {
     SenderId sender = 0;
     bool is_pinned = false;
-    std::uint32_t slot = 0;  // Of checks_ and directions_.
+    std::uint32_t slot = 0;  // Of checks_, directions_ and accuracies_.
     double tokens = 0.0;
     Timestamp last{};
   };
@@ -166,6 +167,7 @@ class BsmIntake {
   std::vector<Account> accounts_;
   std::vector<SenderChecks> checks_;  // By slot: they stay where they are when senders come and go.
   std::vector<DirectionReading> directions_;  // By slot too.
+  std::vector<AccuracyWatch> accuracies_;     // By slot too.
   std::vector<std::uint32_t> free_slots_;
   RepeatMemory repeats_;
   KnockMemory knocks_;

@@ -12,6 +12,7 @@ namespace {
 constexpr double kContested_s = 2.0;  // So long the same core data under two ids counts.
 // Claimed times closer than this are one: GNSS units repeat a place with its stamp.
 constexpr double kSameTime_s = 0.02;
+constexpr double kPatience_s = 3.0;    // Between two spells of poor accuracy that clear the path.
 constexpr double kStanding_mps = 0.5;  // Without a course, speed below this makes no way.
 
 }  // namespace
@@ -35,9 +36,16 @@ std::optional<Finding> SenderChecks::Judge(const Claim& claim, const SenderTrack
   if (claim.accuracy_is_poor) {
     // A unit that reports poor accuracy makes no claim about its position: neither position nor
     // path is judged.
-    path_.Restart();
-    last_path_.reset();
+    was_poor_ = true;
   } else {
+    // Its error has changed meanwhile, which is no displacement. At most once in kPatience_s: a
+    // sender must not clear its path at will.
+    if (was_poor_ && (!cleared_ || ToSeconds(claim.received - *cleared_) >= kPatience_s)) {
+      path_.Restart();
+      last_path_.reset();
+      cleared_ = claim.received;
+    }
+    was_poor_ = false;
     add(JudgeMotion(claim, track, config));
     add(innovation_.Judge(track.latest_nis, track.nis_freedom, dt_s, config));
   }

@@ -58,6 +58,8 @@ class SenderChecks {
   SpeedStepCheck speed_step_;
   PathCheck path_;
   std::optional<Timestamp> contested_;
+  std::optional<Timestamp> cleared_;  // The path, after a spell of poor accuracy.
+  bool was_poor_ = false;             // The claim before.
   // The claim before, as judged for motion.
   struct Last {
     Timestamp received{};

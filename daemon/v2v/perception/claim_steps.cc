@@ -46,6 +46,7 @@ SenderRecord* V2vPerception::FollowSender(const Claim& claim, const ClaimInOdome
     if (admission.record == nullptr) return nullptr;
     record = admission.record;
   }
+  record->first_heard = claim.first_heard;
   record->length_m = claim.length_m;
   record->width_m = claim.width_m;
   record->certificate = claim.certificate;

@@ -44,8 +44,9 @@ PriorityVehicle* FindContinued(PriorityList& list, SenderRecord& record,
   PriorityVehicle* continued = nullptr;
   for (PriorityVehicle& vehicle : list.vehicles()) {
     const double silence_s = ToSeconds(here.stamp - vehicle.last_v2v);
-    if (vehicle.has_ended() || silence_s < change.least_silence_s ||
-        silence_s > change.most_silence_s || !Fits(vehicle, here, config)) {
+    if (vehicle.has_ended() || record.first_heard <= vehicle.last_v2v ||
+        silence_s < change.least_silence_s || silence_s > change.most_silence_s ||
+        !Fits(vehicle, here, config)) {
       continue;
     }
     if (continued != nullptr) return nullptr;  // Two could be meant: neither is taken.

@@ -10,8 +10,9 @@ namespace v2vouch {
 PriorityVehicle* FindContested(PriorityList& list, SenderId sender, Timestamp now,
                                const IdentityChangeConfig& config);
 
-/// An honest change of pseudonym: a new id goes on where an old one has just fallen silent. Counts
-/// the newcomer's claims that fit one vehicle alone.
+/// An honest change of pseudonym: a new id goes on where an old one has just fallen silent. An
+/// id that was heard before that is another sender. Counts the newcomer's claims that fit one
+/// vehicle alone.
 /// @return the vehicle that the sender continues, after IdentityChangeConfig::messages; null: none.
 PriorityVehicle* FindContinued(PriorityList& list, SenderRecord& record,
                                const ClaimInOdometry& here, const PriorityConfig& config);

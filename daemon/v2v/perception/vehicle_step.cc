@@ -162,6 +162,11 @@ VehicleStep StepVehicle(const V2vView& view, PriorityVehicle& vehicle, const Loc
     // A sender that was leaving its vehicle would take the bridge along.
     const SenderRecord* record = view.senders.Find(vehicle.sender);
     if (record != nullptr && IsWalkingOff(record->trust.history(), view.config.trust)) return end();
+    // Nor does a bridge begin on a sender that has reported poor accuracy for a while: nothing has
+    // confirmed it since.
+    if (record != nullptr && ToSeconds(frame.stamp - record->last.stamp) > config.max_gap_s) {
+      return end();
+    }
     BeginBridge(vehicle);
     step.is_lost = true;
   }

@@ -41,6 +41,7 @@ struct SenderRecord {
   SenderTrust trust;
 
   // --- What it said.
+  Timestamp first_heard{};           ///< Its first message, whether or not it was followed then.
   ClaimInOdometry last;              ///< Newest claim with a position of use.
   bool has_last = false;             ///< False: none yet, or none in the present alignment.
   std::optional<double> length_m{};  ///< As claimed.

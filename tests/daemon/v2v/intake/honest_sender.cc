@@ -111,7 +111,11 @@ std::vector<Bsm> HonestMessages(const HonestErrors& errors, double duration_s, s
     car.time_s = at_s;
     car.msg_count = count++ % 128;
     car.latency_s = errors.latency_s + random.Uniform(0.0, errors.latency_spread_s);
-    const double burst = in_half_minute > 20.0 && in_half_minute < 25.0 ? errors.burst_m : 0.0;
+    const double from_edge_s = std::min(in_half_minute - 20.0, 25.0 - in_half_minute);
+    const double burst = from_edge_s <= 0.0 ? 0.0
+                         : from_edge_s < errors.burst_rise_s
+                             ? errors.burst_m * from_edge_s / errors.burst_rise_s
+                             : errors.burst_m;
     car.east_m = place.east_m + bias_east + step_east + random.Normal(0.0, errors.white_m);
     car.north_m = place.north_m + bias_north + burst + random.Normal(0.0, errors.white_m);
     const bool stands = std::abs(now.speed_mps) < 0.3;

@@ -25,6 +25,7 @@ struct HonestErrors {
   double course_sigma_deg = 2.0;
   double step_m = 0.0;             ///< GNSS re-converges by this every 30 s.
   double burst_m = 0.0;            ///< Off by this for 5 s of every 30 s.
+  double burst_rise_s = 0.0;       ///< Rises and falls within this time.
   bool is_burst_reported = false;  ///< The reported accuracy follows.
   bool is_moving = true;
 };

@@ -63,6 +63,23 @@ TEST(PriorityIdentity, HonestIdentityChangeKeepsTheVehicleSeenOrHidden) {
   }
 }
 
+// A sender whose messages are lost for a while has not changed its pseudonym to that of the car
+// beside: that one was heard before.
+TEST(PriorityIdentity, AnIdThatWasHeardBeforeIsNoNewPseudonym) {
+  Scene scene = Validated(8, 4.0);
+  const auto beside = [&] { scene.Honest(2, {0.0, 2.5}); };
+  scene.Run(0.2, [&] {
+    scene.Honest(1);
+    beside();
+  });
+  scene.Run(0.8, beside);
+  scene.Run(0.2, [&] { scene.Honest(1); });
+  ASSERT_EQ(scene.Priority().size(), 1u);
+  EXPECT_EQ(scene.Priority()[0].sender, 1u);
+  EXPECT_NE(scene.perception.TrustOf(2), TrustState::kSuspect);
+  EXPECT_TRUE(scene.outputs.reports.empty());
+}
+
 TEST(PriorityIdentity, OldIdThatSpeaksAgainTakesItsVehicleBack) {
   Scene scene = Validated(8);
   scene.Run(0.3, [] {});

@@ -42,6 +42,17 @@ TEST(PriorityLostSender, ItsMotionCarriesAHiddenVehicleThatTurns) {
   }
 }
 
+// While the sensors saw it, nothing of what it said was compared with them.
+TEST(PriorityLostSender, NoBridgeBeginsOnASenderThatHasBeenLostForSeconds) {
+  Scene scene = Validated(2);
+  scene.Run(2.0, [&] { scene.Lost(1, kOff); });
+  ASSERT_EQ(scene.Priority().size(), 1u);
+  Hide(scene);
+  scene.Run(1.0, [&] { scene.Lost(1, kOff); });
+  EXPECT_TRUE(scene.Priority().empty());
+  EXPECT_TRUE(scene.outputs.reports.empty());
+}
+
 // Turned at once, as the last look at a part had it: the claimed direction is not shut out by its
 // gate, the vehicle would go on into the wrong street.
 TEST(PriorityLostSender, AHiddenVehicleCarriedInAFalseDirectionIsTurnedOrEnded) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -145,6 +146,7 @@ class Scene {
     claim.finding = finding;
     claim.sender = sender;
     claim.received = now;
+    claim.first_heard = first_heard.try_emplace(sender, now).first->second;
     claim.p_E = plane
                     .ToEcefPoint(LocalPoint{{p.x() + random.Normal(0.0, noise_m),
                                              p.y() + random.Normal(0.0, noise_m), 0.0}})
@@ -201,6 +203,7 @@ class Scene {
   std::vector<Car> cars;
   bool has_wall = false;
   std::optional<Occluder> screen;
+  std::map<SenderId, Timestamp> first_heard;
 };
 
 inline Car OncomingCar(double x_m = 70.0) {
