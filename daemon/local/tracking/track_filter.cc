@@ -17,6 +17,7 @@ constexpr double kDirectedSigma_rad = 0.15;
 // of a vehicle is it known how what shows of it slides from the tail to the flank.
 constexpr double kLateSigma_rad = 0.3;
 constexpr double kLongKnown_s = 2.0;
+constexpr double kSoonPassed_m = 40.0;
 constexpr double kShownSigma_rad = 0.6;
 // Sigma of the speed over the speed: five standard deviations from standing for good, three until
 // the next list.
@@ -139,7 +140,9 @@ void TrackFilter::PromoteIfClear(const FilterSettings& settings) {
   const ObjectClass first = IsLong(object_class_) ? ObjectClass::kUnknown : object_class_;
   const Extent size = ClassExtent(first);
   const PointFilter point = SlidingPoint(settings);
-  const bool is_known_long = has_pictures_ && doppler_ == Doppler::kMoving && age_s_ > kLongKnown_s;
+  const bool is_known_long = has_pictures_ && doppler_ == Doppler::kMoving &&
+                             age_s_ > kLongKnown_s && point.velocity().norm() < kCreeping_mps &&
+                             (point.position() - seen_from_).norm() < kSoonPassed_m;
   if (HasDirection(point, is_known_long ? kLateSigma_rad : kDirectedSigma_rad, kDirectedShare)) {
     vehicle_.StartMoving(point, size, seen_from_, settings);
     is_vehicle_ = true;
