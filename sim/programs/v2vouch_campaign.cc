@@ -136,23 +136,28 @@ bool IsUsable(const std::string& config, const RunnerSettings& settings, Childre
   return false;
 }
 
+/// What every run needs: the other programs, and folders for what comes out.
+void Prepare(const fs::path& out, const RunnerSettings& settings,
+             std::vector<std::string>& problems) {
+  for (const std::string& name : MissingPrograms(settings)) {
+    problems.push_back(name + ": not in " + settings.programs.string() +
+                       ", where every run would start it: keep the programs together");
+  }
+  if (!problems.empty()) return;
+  std::error_code error;
+  for (const fs::path& folder : {out / "runs", settings.scratch}) {
+    if (!error) fs::create_directories(folder, error);
+  }
+  if (error) problems.push_back(out.string() + ": " + error.message());
+}
+
 /// @return exit code, or -1 to go on and report.
 int RunCampaign(const Options& options) {
   std::vector<std::string> problems;
   const auto jobs = PlannedJobs(options, problems);
   const fs::path out = fs::absolute(options.out);
   RunnerSettings settings = SettingsOf(options, out);
-  for (const std::string& name : MissingPrograms(settings)) {
-    problems.push_back(name + ": not in " + settings.programs.string() +
-                       ", where every run would start it: keep the programs together");
-  }
-  std::error_code error;
-  if (problems.empty()) {
-    for (const fs::path& folder : {out / "runs", settings.scratch}) {
-      if (!error) fs::create_directories(folder, error);
-    }
-    if (error) problems.push_back(options.out + ": " + error.message());
-  }
+  Prepare(out, settings, problems);
   Children children;
   std::string problem;
   if (problems.empty() && !options.config.empty() &&
@@ -190,7 +195,8 @@ int RunCampaign(const Options& options) {
         progress.Show(now);
       },
       Complain);
-  if (!options.keep && settings.scratch == out / "tmp") fs::remove(settings.scratch, error);
+  std::error_code ignored;
+  if (!options.keep && settings.scratch == out / "tmp") fs::remove(settings.scratch, ignored);
   if (stop_asked != 0) {
     Complain("stopped; what is done is kept, the same call goes on from there");
     return kExitFailed;
