@@ -13,12 +13,12 @@ namespace {
 
 // Heading sigma for becoming a vehicle, and for being shown as one.
 constexpr double kDirectedSigma_rad = 0.15;
+constexpr double kShownSigma_rad = 0.6;
 // What drives slowly shows its direction late. It becomes a vehicle before it is passed, since only
 // of a vehicle is it known how what shows of it slides from the tail to the flank.
 constexpr double kLateSigma_rad = 0.3;
 constexpr double kLongKnown_s = 2.0;
 constexpr double kSoonPassed_m = 40.0;
-constexpr double kShownSigma_rad = 0.6;
 // Sigma of the speed over the speed: five standard deviations from standing for good, three until
 // the next list.
 constexpr double kDirectedShare = 0.2;
