@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -62,6 +63,8 @@ struct CameraMeasurement {
   bool left_is_cut = false;
   bool right_is_cut = false;
   bool bottom_is_cut = false;  ///< Depression says nothing.
+  /// Of the top edge below the horizon; NaN where the picture's border cuts it off.
+  double top_depression_rad = std::numeric_limits<double>::quiet_NaN();
   ObjectClass object_class = ObjectClass::kUnknown;
   double score = 0.0;
 };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the size of an ExtendedState is replaced by another, or found to be larger.
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/common/base/angle.h"
 #include "daemon/common/models/extent.h"
 #include "daemon/common/models/extent_limits.h"
 #include "daemon/common/models/radar_outline.h"
@@ -27,6 +29,24 @@ constexpr int kLength = ExtendedState::kLength;
 constexpr int kWidth = ExtendedState::kWidth;
 using Vector = ExtendedState::Vector;
 using Matrix = ExtendedState::Matrix;
+// Of the difference that stands for a derivative.
+constexpr double kStep_m = 0.1;
+
+// The angle under which a box is seen from `sensor`, a place in the axes of the box from its
+// centre. Near a long flank this is far from size / distance.
+double AngularWidth(const Eigen::Vector2d& sensor, double length_m, double width_m) {
+  const double middle = std::atan2(-sensor.y(), -sensor.x());
+  double least = 0.0;
+  double most = 0.0;
+  for (const double x : {-0.5 * length_m, 0.5 * length_m}) {
+    for (const double y : {-0.5 * width_m, 0.5 * width_m}) {
+      const double off = AngleDifference(std::atan2(y - sensor.y(), x - sensor.x()), middle);
+      least = std::min(least, off);
+      most = std::max(most, off);
+    }
+  }
+  return most - least;
+}
 
 }  // namespace
 
@@ -137,13 +157,18 @@ std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoSta
   out.H.setZero(2, kStateSize);
   out.E.resize(2, 2);
   out.E.row(0) << ca, sa;
-  out.E.row(1) << (sa > kFlankShows ? sa / range : 0.0), ca / range;
+  const Eigen::Vector2d sensor = Eigen::Rotation2D<double>(-state.mean[kYaw]) * p_OS;
+  const double length = state.mean[kLength];
+  const double width = state.mean[kWidth];
+  const double angle = AngularWidth(sensor, length, width);
+  const double by_length = (AngularWidth(sensor, length + kStep_m, width) - angle) / kStep_m;
+  const double by_width = (AngularWidth(sensor, length, width + kStep_m) - angle) / kStep_m;
+  out.E.row(1) << (sa > kFlankShows ? by_length : 0.0), by_width;
   out.R.setZero(2, 2);
   const Eigen::Vector2d sigma(radar.range_sigma_m, radar.azimuth_sigma_rad);
   const Eigen::Vector2d span(measurement.radial_extent_m,
                              measurement.azimuth_max_rad - measurement.azimuth_min_rad);
-  const Eigen::Vector2d whole(ca * state.mean[kLength] + sa * state.mean[kWidth],
-                              (sa * state.mean[kLength] + ca * state.mean[kWidth]) / range);
+  const Eigen::Vector2d whole(ca * length + sa * width, angle);
   bool says_something = false;
   for (int i = 0; i < 2; ++i) {
     // Noise alone spreads n returns over about 2 sigma sqrt(ln n), and what one scan shows too much

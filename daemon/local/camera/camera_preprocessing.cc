@@ -74,11 +74,11 @@ constexpr double kLowestVan_m = 1.8;
 // A class name is evidence, not a size: networks call cars lorries. What is as low as a car is
 // none, wherever its height can be told: from the angles to its foot and its top.
 ObjectClass PlausibleClass(ObjectClass named, const CameraConfig& camera,
-                           const CameraMeasurement& m, double top_depression_rad) {
+                           const CameraMeasurement& m) {
   if (named != ObjectClass::kTruck && named != ObjectClass::kBus) return named;
   if (m.bottom_is_cut || !(m.depression_rad > 2.0 * m.depression_sigma_rad)) return named;
   const double foot = std::tan(m.depression_rad);
-  const double height_m = camera.z_m * (1.0 - std::tan(top_depression_rad) / foot);
+  const double height_m = camera.z_m * (1.0 - std::tan(m.top_depression_rad) / foot);
   const double sigma_m = height_m * m.depression_sigma_rad / m.depression_rad;
   if (height_m + 2.0 * sigma_m > kLowestLorry_m) return named;
   return height_m > kLowestVan_m ? ObjectClass::kVan : ObjectClass::kCar;
@@ -150,8 +150,8 @@ void ProcessCamera(const CameraDetections& detections, const CameraConfig& camer
          CoveredBottom(box, detections, camera.min_score) > camera.covered_bottom_share);
     m.object_class = box.object_class;
     if (top > kBorder_px) {
-      m.object_class = PlausibleClass(box.object_class, camera, m,
-                                      AnglesOfPixel(camera, middle_u, top).depression_rad);
+      m.top_depression_rad = AnglesOfPixel(camera, middle_u, top).depression_rad;
+      m.object_class = PlausibleClass(box.object_class, camera, m);
     }
     m.score = box.score;
     measurements.push_back(m);

@@ -224,6 +224,8 @@ void ClusterOwners::Join(const RadarLook& look, std::span<const RadarMeasurement
     if (owner_[j] < 0 || owner_[j] == kAssigned || measurements[j].is_object) continue;
     const auto owner = static_cast<std::size_t>(owner_[j]);
     if (!association.GivenTo(owner)) continue;
+    // An echo starts nothing, but it is no part of the body either: it would lengthen it.
+    if (association.candidates()[j].is_echo) continue;
     const Eigen::Vector2d velocity_O = table[owner].evidence.filter.velocity_O();
     const Eigen::Vector2d v_TA_R = R_RB * (R_BO * velocity_O - v_A_B);
     joined_[owner] = JoinClusters(joined_[owner], measurements[j], v_TA_R);

@@ -33,6 +33,8 @@ constexpr double kPartSpeed_mps = 2.0;
 constexpr double kPartHold_s = 0.5;
 constexpr double kFreshReflection_s = 0.1;
 constexpr double kPartSigma_m = 1.5;
+// A length that is known so well was seen from end to end: what follows is an echo.
+constexpr double kKnownLength_m = 0.5;
 // Of two tracks in one lane at one speed, with a gap of less than so long, for so long.
 constexpr double kConvoy_mps = 8.0;
 constexpr double kConvoySpeed_mps = 1.5;
@@ -267,6 +269,7 @@ void OneVehicle::JoinParts(double dt_s, TrackTable& table) const {
     if (held_s < hold_s) continue;
     evidence.is_ended = true;
     const auto [lorry, its_evidence] = table[whole];
+    if (lorry.extent.length_sigma_m < kKnownLength_m) continue;
     its_evidence.filter.Lengthen(needed_m, kPartSigma_m);
     its_evidence.filter.Show(table.settings(), lorry);
   }

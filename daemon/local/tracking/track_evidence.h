@@ -5,6 +5,7 @@
 #include <array>
 
 #include "daemon/common/base/time.h"
+#include "daemon/local/tracking/body_height.h"
 #include "daemon/local/tracking/glances.h"
 #include "daemon/local/tracking/track_filter.h"
 
@@ -23,7 +24,8 @@ struct TrackEvidence {
   double proven = 0.0;      ///< Existence by pictures, boxes and motion alone.
   bool is_certain = false;  ///< Started by a bench's pose or box: however unlikely, it may stay.
   bool is_ended = false;    ///< Leaves the table at the end of this step.
-  std::array<double, 8> class_votes{};  ///< Scores by ObjectClass, older ones less.
+  std::array<double, 8> class_votes{};        ///< Scores by ObjectClass, older ones less.
+  ObjectClass named = ObjectClass::kUnknown;  ///< What most of them say.
 
   // Radar: Tracker::UpdateRadar.
   Eigen::Vector2d reflection_O = Eigen::Vector2d::Zero();    ///< Last cluster it was given ...
@@ -37,7 +39,8 @@ struct TrackEvidence {
 
   // Camera: Tracker::UpdateCamera.
   int not_pictured = 0;  ///< Pictures that ought to have shown it.
-  bool is_far = false;   ///< Beyond camera_birth_range_m at its last box.
+  BodyHeight height;
+  bool is_far = false;  ///< Beyond camera_birth_range_m at its last box.
 
   // A range that only cameras have guessed: StandingReturns::LearnRange.
   bool has_range = true;

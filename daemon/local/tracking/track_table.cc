@@ -117,11 +117,14 @@ void TrackTable::NoteClass(std::size_t i, ObjectClass object_class, double score
   if (named == 0 || named >= votes.size()) return;
   for (double& vote : votes) vote *= kVoteMemory;
   votes[named] += std::max(score, kLeastVote);
-  const auto current = static_cast<std::size_t>(tracks_[i].object_class);
-  if (named != current && votes[named] > kClearlyBetter * votes[current]) {
-    tracks_[i].object_class = object_class;
-    evidence_[i].filter.SetClass(object_class);
+  ObjectClass& current = evidence_[i].named;
+  if (votes[named] > kClearlyBetter * votes[static_cast<std::size_t>(current)]) {
+    current = object_class;
   }
+  const ObjectClass plausible = evidence_[i].height.Plausible(current);
+  if (plausible == tracks_[i].object_class) return;
+  tracks_[i].object_class = plausible;
+  evidence_[i].filter.SetClass(plausible);
 }
 
 void TrackTable::Fail(std::size_t i) {

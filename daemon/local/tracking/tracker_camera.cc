@@ -19,6 +19,8 @@ constexpr double kFalseNear = 0.02;
 // Detection probability of a picture that should show the vehicle.
 constexpr double kExpectedInPicture = 0.7;
 constexpr std::size_t kMostBoxes = 128;
+// So long after a reflection its place is the near face's.
+constexpr double kFreshRange_s = 0.3;
 
 bool IsFinite(const CameraMeasurement& z) {
   return std::isfinite(z.azimuth_left_rad) && std::isfinite(z.azimuth_right_rad) &&
@@ -129,6 +131,9 @@ void Tracker::TakeCameraBox(const CameraLook& look, SensorKey sensor, std::size_
                             const CameraMeasurement& raw) {
   const auto [track, evidence] = table_[i];
   const CameraMeasurement z = association_.expected().Given(i, table_, raw);
+  if (ToSeconds(table_.now() - evidence.reflected) < kFreshRange_s) {
+    evidence.height.Add(look, z, (evidence.reflection_O - look.origin_O()).norm());
+  }
   table_.NoteClass(i, z.object_class, z.score);
   if (!evidence.filter.Update(look, z, table_.settings())) return table_.Fail(i);
   table_.NoteHit(i, sensor);

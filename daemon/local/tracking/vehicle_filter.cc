@@ -26,6 +26,10 @@ constexpr double kMostDepth = 6.0;
 // many standard deviations and metres, they say where it is.
 constexpr double kOffSigmas = 2.0;
 constexpr double kOff_m = 0.7;
+// Of what is partly hidden the near face may be what cannot be seen, and returns before it may be
+// those of what stands there: visible shares that are asked for.
+constexpr double kWhole = 0.9;
+constexpr double kHalf = 0.5;
 // Behind the face of a longer vehicle they may come from anywhere under it, and those of one that
 // stands are the same in scan after scan, another's among them.
 constexpr double kShallow_m = 7.0;
@@ -226,10 +230,13 @@ bool VehicleFilter::may_move_face() const {
 bool VehicleFilter::IsOffFace(const RadarMeasurement& z, const Linearized& model) const {
   if (z.is_object || z.may_be_anothers || model.O.rows() == 0) return false;
   const double deeper_m = model.y[0];
-  if (usual_depth_ < -kOffSigmas) return deeper_m < -kOff_m;
+  if (usual_depth_ < -kOffSigmas) {
+    return z.visible_share >= (z.is_static ? kWhole : kHalf) && deeper_m < -kOff_m;
+  }
   const bool is_car_in_motion = has_driven_ && std::abs(best().mean[kSpeed]) > kTurning_mps &&
                                 best().mean[ExtendedState::kLength] < kShallow_m;
-  return is_car_in_motion && usual_depth_ > kOffSigmas && deeper_m > kOff_m;
+  return is_car_in_motion && z.visible_share >= kWhole && usual_depth_ > kOffSigmas &&
+         deeper_m > kOff_m;
 }
 
 template std::optional<Likelihood> VehicleFilter::Evaluate(const RadarLook&,

@@ -103,6 +103,33 @@ TEST(LinearizeSpan, ALongSideSeenBroadsideTeachesTheLength) {
   EXPECT_FALSE(LinearizeSpan(state, EgoState{}, radar, z));
 }
 
+// Beside a lorry its flank fills far more of the view than its length over its distance.
+TEST(LinearizeSpan, AFlankThatIsPassedCloselyLengthensNothing) {
+  constexpr double kLong_m = 10.7;
+  constexpr double kBeside_m = 2.5;
+  RadarConfig radar;
+  radar.azimuth_sigma_rad = FromDegrees(0.7);
+  for (const double rear_m : {-9.0, -7.0, -5.0, -3.0, -1.0, 0.5}) {
+    ExtendedState state = LeadCar(ObjectClass::kTruck);
+    state.mean[ExtendedState::kLength] = kLong_m;
+    state.mean[kX] = radar.x_m + rear_m + 0.5 * kLong_m;
+    state.mean[kY] = radar.y_m + kBeside_m + 0.5 * state.mean[ExtendedState::kWidth];
+    state.mean[kYaw] = 0.0;
+    RadarMeasurement z;
+    z.returns = 8;
+    z.radial_extent_m = 4.0;
+    z.azimuth_min_rad = std::atan2(kBeside_m, rear_m + kLong_m);
+    z.azimuth_max_rad = std::atan2(kBeside_m, rear_m);
+    EXPECT_FALSE(LinearizeSpan(state, EgoState{}, radar, z)) << rear_m;
+    if (rear_m != -5.0) continue;
+    // One that is shorter is lengthened still.
+    state.mean[ExtendedState::kLength] = kLong_m - 4.0;
+    const auto span = LinearizeSpan(state, EgoState{}, radar, z);
+    ASSERT_TRUE(span);
+    EXPECT_GT(span->y[1], 0.0);
+  }
+}
+
 TEST(LinearizeSpan, SaysNothingForOneReturnOrObjects) {
   const ExtendedState state = LeadCar(ObjectClass::kCar);
   RadarMeasurement z;

@@ -84,7 +84,7 @@ TEST_F(NearFaceTest, TheCovarianceStaysPositiveHoweverOftenItIsSetAnew) {
 // rest, which a radar may not learn.
 // Its near face 1.6 m nearer than the returns, which come towards the radar at `speed_mps`.
 // @return how far its near face is off after three seconds.
-double FaceError(const RadarLook& look, double speed_mps) {
+double FaceError(const RadarLook& look, double speed_mps, double visible_share = 1.0) {
   double face_m = 30.0;
   PoseMeasurement pose;
   pose.x_m = face_m + 0.5 * 4.6 - 1.6;
@@ -100,6 +100,7 @@ double FaceError(const RadarLook& look, double speed_mps) {
     face_m -= 0.05 * speed_mps;
     RadarMeasurement z = FaceReturn(face_m + kDepth_m);
     z.range_rate_mps = -speed_mps;
+    z.visible_share = visible_share;
     EXPECT_TRUE(filter.Update(look, z, false, {}));
   }
   return NearFace(filter) - face_m;
@@ -112,6 +113,64 @@ TEST_F(NearFaceTest, ReturnsBehindItScanAfterScanMoveACarThatDrives) {
 // A part of another vehicle behind it shows the same returns in scan after scan.
 TEST_F(NearFaceTest, ReturnsBehindItMoveNoCarThatHasStopped) {
   EXPECT_LT(FaceError(look, 0.0), -0.8);
+}
+
+// Its near face may be what cannot be seen.
+TEST_F(NearFaceTest, ReturnsBehindItMoveNoCarThatIsPartlyHidden) {
+  EXPECT_LT(FaceError(look, 2.0, 0.5), FaceError(look, 2.0) - 0.5);
+}
+
+// What covers it stands right before it: its returns are not the face.
+TEST_F(NearFaceTest, ReturnsBeforeItMoveNoVehicleThatIsPartlyHidden) {
+  VehicleFilter whole, standing, moving;
+  whole.StartAt(LorryTooFar());
+  standing = moving = whole;
+  for (int scan = 0; scan < 60; ++scan) {
+    RadarMeasurement z = FaceReturn(kFace_m + kDepth_m);
+    for (VehicleFilter* filter : {&whole, &standing, &moving}) filter->Predict(0.05, {});
+    ASSERT_TRUE(whole.Update(look, z, false, {}));
+    z.visible_share = 0.4;
+    ASSERT_TRUE(moving.Update(look, z, false, {}));
+    z.visible_share = 0.6;
+    z.is_static = true;
+    ASSERT_TRUE(standing.Update(look, z, false, {}));
+  }
+  EXPECT_GT(NearFace(moving), NearFace(whole) + 0.5);
+  EXPECT_GT(NearFace(standing), NearFace(whole) + 0.5);
+}
+
+// What bounces between a follower and the car comes back from twice as far: at next to no range
+// rate it looks like its far end.
+TEST(SecondEcho, LengthensNoCarThatFollows) {
+  Scene scene(3);
+  scene.ego.speed_mps = 10.0;
+  scene.cars.push_back({.p_W = {12.5, 0.0}, .speed_mps = 10.0});
+  Tracker tracker(TrackerConfig{}, scene.vehicle);
+  double longest_m = 0.0;
+  for (int step = 0; step < 400; ++step) {
+    scene.Advance(0.05);
+    auto scan = scene.Scan(0);
+    const std::size_t own = scan.size();
+    for (std::size_t j = 0; j < own; ++j) {
+      RadarMeasurement& z = scan[j];
+      if (z.outline_count == 0) z.outline[z.outline_count++] = {z.range_m, z.azimuth_rad, 40.0};
+      RadarMeasurement echo = z;
+      echo.range_m *= 2.0;
+      echo.near_range_m *= 2.0;
+      echo.range_rate_mps *= 2.0;
+      for (std::size_t k = 0; k < echo.outline_count; ++k) {
+        echo.outline[k].range_m *= 2.0;
+        echo.outline[k].strength_db -= 20.0;
+      }
+      scan.push_back(echo);
+    }
+    scene.Radar(tracker, scan);
+    if (const LocalTrack* track = Scene::Find(tracker, scene.cars[0], 6.0)) {
+      longest_m = std::max(longest_m, track->extent.length_m);
+    }
+  }
+  EXPECT_GT(longest_m, 3.0);
+  EXPECT_LT(longest_m, 5.5);
 }
 
 TEST_F(NearFaceTest, ReturnsOutOfAnothersBoxMoveNoVehicle) {

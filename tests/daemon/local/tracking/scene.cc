@@ -285,11 +285,12 @@ void Scene::Radar(Tracker& tracker, const std::vector<RadarMeasurement>& scan, i
   });
 }
 
-void Scene::Camera(Tracker& tracker, int index) {
+void Scene::Camera(Tracker& tracker, int camera) { Camera(tracker, Picture(camera), camera); }
+
+void Scene::Camera(Tracker& tracker, const std::vector<CameraMeasurement>& picture, int index) {
   tracker.Predict(now());
   const CameraConfig& camera = vehicle.cameras[static_cast<std::size_t>(index)];
   const double half_fov = std::atan2(0.5 * camera.image_width_px, camera.fx_px);
-  const auto picture = Picture(index);
   tracker.UpdateCamera(index, ego_state(), picture, [&](const LocalTrack& track) {
     for (const Car& car : cars) {
       const double distance = (car.p_W - track.state_O.mean.head<2>()).norm();

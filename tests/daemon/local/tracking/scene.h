@@ -56,6 +56,7 @@ class Scene {
   /// The same with a scan of it that was edited.
   void Radar(Tracker& tracker, const std::vector<RadarMeasurement>& scan, int radar = 0);
   void Camera(Tracker& tracker, int camera = 0);
+  void Camera(Tracker& tracker, const std::vector<CameraMeasurement>& picture, int camera = 0);
   /// What visibility would answer: nominal probability, hidden and out-of-view cars.
   [[nodiscard]] Detectability Answer(const LocalTrack& track, double nominal, double half_fov_rad,
                                      const Eigen::Vector2d& sensor_B) const;
