@@ -34,6 +34,7 @@ void FrameDetectability::Ask(SensorKey sensor, const DetectabilityOf& detectabil
     answers_.push_back(answer);
     missing_[i] = track.is_confirmed ? 1.0 - std::pow(1.0 - detection_[i], share) : detection_[i];
     if (sensor.kind == SensorKind::kRadar && !evidence.has_range) missing_[i] = 0.0;
+    evidence.missed_looks += missing_[i];
     missed_[i] = 1.0 - track.existence * missing_[i];
   }
 }

@@ -18,6 +18,10 @@ constexpr double kCoastingSince_s = 0.5;
 constexpr double kForget = 1e-5;
 // In view, a vehicle is missed for no longer than this.
 constexpr double kOverdue_s = 0.7;
+// Nor, partly hidden, for longer than this if sensors ought to have seen it so often since then:
+// existence that is as good as certain would take far longer to fall.
+constexpr double kSilent_s = 0.4;
+constexpr double kMostLooks = 1.5;
 // After the first, which is not asked. A radar sees mirror images behind rails and facades, where
 // it cannot see at all.
 constexpr int kClearHits = 2;
@@ -40,8 +44,9 @@ bool IsNothing(const LocalTrack& track, const TrackEvidence& evidence) {
 
 // Nothing is known to hide it, and no sensor has seen it for a while.
 bool IsOverdue(const LocalTrack& track, const TrackEvidence& evidence, Timestamp now) {
-  return track.visibility == Visibility::kVisible &&
-         ToSeconds(now - evidence.last_hit) > kOverdue_s;
+  const double silent_s = ToSeconds(now - evidence.last_hit);
+  if (silent_s > kSilent_s && evidence.missed_looks > kMostLooks) return true;
+  return track.visibility == Visibility::kVisible && silent_s > kOverdue_s;
 }
 
 }  // namespace

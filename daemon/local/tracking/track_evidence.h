@@ -20,6 +20,7 @@ struct TrackEvidence {
 
   // Existence: TrackTable, and the frames' updates in Tracker.
   Timestamp last_hit{};
+  double missed_looks = 0.0;  ///< Detections that were expected since then.
   Timestamp borne_out{};    ///< Last hit that cannot be the second echo of another vehicle.
   double proven = 0.0;      ///< Existence by pictures, boxes and motion alone.
   bool is_certain = false;  ///< Started by a bench's pose or box: however unlikely, it may stay.

@@ -107,6 +107,7 @@ bool TrackTable::Start(const TrackFilter& filter, SensorKey sensor, std::size_t 
 
 void TrackTable::NoteHit(std::size_t i, SensorKey sensor, bool is_echo) {
   evidence_[i].last_hit = now_;
+  evidence_[i].missed_looks = 0.0;
   if (!is_echo) evidence_[i].borne_out = now_;
   tracks_[i].support.Add(sensor, now_);
 }

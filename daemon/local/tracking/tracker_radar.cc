@@ -14,6 +14,8 @@ namespace {
 constexpr double kClearLook = 0.4;
 // For so long second echoes alone keep a vehicle.
 constexpr double kEchoAlone_s = 1.0;
+// ... and one that no picture has named.
+constexpr double kUnnamedEchoAlone_s = 0.3;
 // Where only pictures have seen a vehicle, a return within so many standard deviations and metres
 // of its length may be its own.
 constexpr double kEmptySigmas = 3.0;
@@ -60,7 +62,8 @@ void Tracker::CompareClusters(const RadarLook& look,
     if (is_guess && evidence.glances.size() < Glances::kMost) continue;
     const bool takes_standing = track.camera_hits() + track.object_hits() > 0 ||
                                 (evidence.moving_hits >= kDrivenHits && evidence.has_travelled);
-    const bool is_echo_alone = ToSeconds(table_.now() - evidence.borne_out) > kEchoAlone_s;
+    const bool is_echo_alone = ToSeconds(table_.now() - evidence.borne_out) >
+                               (track.camera_hits() > 0 ? kEchoAlone_s : kUnnamedEchoAlone_s);
     candidates.ForEachNear(evidence.filter.position_O(), reach_m, [&](std::size_t j) {
       if (candidates[j].is_echo && is_echo_alone) return;
       if (measurements[j].is_static ? takes_standing : !is_guess) {

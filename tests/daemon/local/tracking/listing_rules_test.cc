@@ -65,6 +65,18 @@ TEST(ListingRules, InViewATrackIsListedForSevenTenthsOfASecondAfterItsLastHit) {
   EXPECT_FALSE(IsListed(car, kNow + FromSeconds(0.75)));
 }
 
+// What hides a part of it makes every look fail more often, so that existence falls slowly.
+TEST(ListingRules, APartlyHiddenTrackThatSensorsOughtToHaveSeenLeavesTheList) {
+  Car car;
+  ASSERT_TRUE(IsListed(car));
+  car.track.visibility = Visibility::kHidden;
+  car.evidence.missed_looks = 1.0;
+  EXPECT_TRUE(IsListed(car, kNow + FromSeconds(0.5)));
+  car.evidence.missed_looks = 2.0;
+  EXPECT_TRUE(IsListed(car, kNow + FromSeconds(0.3)));
+  EXPECT_FALSE(IsListed(car, kNow + FromSeconds(0.5)));
+}
+
 TEST(ListingRules, AHiddenTrackIsWaitedForAsLongAsItWasKnownAndNoLongerThanTheSetting) {
   const ListingRules rules{TrackerConfig{}};
   Car car;
