@@ -39,6 +39,13 @@ BridgeConfig SeenReach(BridgeConfig config) {
   return config;
 }
 
+// The track that a vehicle may come back as: its own, or a new one that no vehicle rests on.
+bool MayBeItsTrack(const V2vView& view, const PriorityVehicle& vehicle, const LocalTrack& track) {
+  if (track.id == vehicle.local_id) return true;
+  return !view.list.Holds(track.id) && (track.id == vehicle.former_local_id ||
+                                        ToSeconds(vehicle.last_support - track.start) <= kSlack_s);
+}
+
 double GateDistance(const Eigen::Vector2d& d, const Eigen::Matrix2d& S) {
   return d.dot(S.inverse() * d);
 }
@@ -90,11 +97,7 @@ bool UpdateReappearance(const V2vView& view, PriorityVehicle& vehicle, Timestamp
   for (const TrackSnapshot& snapshot : view.tracks.tracks()) {
     const LocalTrack& track = snapshot.track;
     if (!snapshot.is_hit) continue;
-    const bool is_own = track.id == vehicle.local_id;
-    if (!is_own &&
-        (view.list.Holds(track.id) || ToSeconds(vehicle.last_support - track.start) > kSlack_s)) {
-      continue;
-    }
+    if (!MayBeItsTrack(view, vehicle, track)) continue;
     const Eigen::Vector2d p_O = track.state_O.mean.head<2>();
     if (!vehicle.CanReach(p_O, stamp, SeenReach(config))) continue;
     const double speed = std::abs(here.mean[kSpeed]) - std::abs(track.state_O.mean[kSpeed]);

@@ -148,7 +148,10 @@ VehicleStep StepVehicle(const V2vView& view, PriorityVehicle& vehicle, const Loc
   vehicle.PredictTo(frame.stamp, view.config.filter);
 
   const TrackSnapshot* seen = view.tracks.Find(vehicle.local_id);
-  if (seen == nullptr) vehicle.local_id = 0;
+  if (seen == nullptr && vehicle.local_id != 0) {
+    vehicle.former_local_id = vehicle.local_id;
+    vehicle.local_id = 0;
+  }
   // The LOCAL track of a hidden vehicle may have switched to what hides it.
   if (seen != nullptr && seen->is_hit &&
       (vehicle.is_supported ||

@@ -18,6 +18,8 @@ namespace v2vouch {
 struct PriorityVehicle {
   std::uint64_t id = 0;        ///< Of PRIORITY; see PriorityId(). 0: it has ended.
   std::uint64_t local_id = 0;  ///< The LOCAL track it rests on; 0 = none.
+  /// ... and that it rested on last; LOCAL may list it again.
+  std::uint64_t former_local_id = 0;
   SenderId sender = 0;
   std::optional<SenderId> predecessor{};  ///< Identity it spoke under before ...
   Timestamp handover{};                   ///< ... until then.

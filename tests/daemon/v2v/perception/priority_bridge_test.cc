@@ -39,6 +39,23 @@ TEST(PriorityBridge, BridgesFourSecondsAndTakesTheVehicleBackUnderItsId) {
   EXPECT_LT(std::sqrt(squared / count), 0.6);
 }
 
+// LOCAL stops listing a hidden vehicle for a second and lists the same track again when it has been
+// measured: no new track, and the vehicle's own.
+TEST(PriorityBridge, ComesBackAsItsOwnTrackThatWasNotListedMeanwhile) {
+  Scene scene = Validated(14);
+  const std::uint64_t id = scene.Priority()[0].track.id;
+  Hide(scene);
+  scene.Run(1.5, [&] { scene.Honest(1); });
+  ASSERT_EQ(scene.Priority().size(), 1u);
+  EXPECT_EQ(scene.Priority()[0].local_id, 0u);
+  scene.has_wall = false;
+  scene.cars[0].is_seen = true;
+  scene.Run(0.25, [&] { scene.Honest(1); });
+  ASSERT_EQ(scene.Priority().size(), 1u);
+  EXPECT_EQ(scene.Priority()[0].track.id, id);
+  EXPECT_EQ(scene.Priority()[0].local_id, 7u);
+}
+
 // A sender leaves its vehicle to the side, at 1 m/s and with the heading to match, and after 2.5 s
 // the vehicle is hidden: too early to withdraw it, but it would take the bridge along.
 TEST(PriorityBridge, NoBridgeFollowsASenderThatWasWalkingOff) {
