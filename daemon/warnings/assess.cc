@@ -126,10 +126,29 @@ class Assessor {
   }
 
   void HeadOn() {
-    Conflict conflict = AssessConflict(*fan_, body_target_, config_);
-    // On a bend every oncoming vehicle is ahead for a while: only what is nearly sure counts.
-    if (conflict.probability < config_.urgent_probability) return;
+    const std::optional<BodyTarget> kept = ComingInItsLane(body_target_, placement_);
+    Conflict conflict =
+        AssessConflict(kept ? Straight() : *fan_, kept ? *kept : body_target_, config_);
+    // On a bend every oncoming vehicle is ahead for a while: of one that follows no lane along the
+    // ego's path only what is nearly sure counts.
+    const double least = kept ? config_.warn_probability : config_.urgent_probability;
+    if (conflict.probability < least) return;
+    if (kept) {
+      const auto step = static_cast<std::size_t>(std::lround(conflict.median_s / kStep_s));
+      conflict.place_B = fan_->mean()[step].centre;
+    }
     Judge(Kind::kFcw, Side::kOncoming, conflict, CrossingFigures(conflict));
+  }
+
+  // The ego's path laid out straight.
+  const EgoFan& Straight() {
+    if (!straight_) {
+      EgoPlan plan = plan_;
+      plan.curvature_per_m = 0.0;
+      plan.path_B.clear();
+      straight_.emplace(plan, sigmas_, body_, config_);
+    }
+    return *straight_;
   }
 
   void Crossing() {
@@ -145,7 +164,10 @@ class Assessor {
         starting_.emplace(plan, sigmas_, body_, config_);
       }
     }
-    const Conflict conflict = AssessConflict(stands_ ? *starting_ : *fan_, body_target_, config_);
+    // What a vehicle has done since it was hidden nobody knows.
+    const bool is_seen = target_->visibility == Visibility::kVisible;
+    const Conflict conflict = AssessConflict(
+        stands_ ? *starting_ : *fan_, is_seen ? Steadied(body_target_) : body_target_, config_);
     const Side side = placement_.zone == Zone::kFromLeft ? Side::kLeft : Side::kRight;
     Judge(Kind::kIma, side, conflict, CrossingFigures(conflict),
           stands_ ? Level::kAdvise : Level::kUrgent);
@@ -190,14 +212,20 @@ class Assessor {
     if (std::abs(placement_.place.left_m) > kAdjacent_m) return;
     if (std::abs(body_target_.mean[kSpeed]) < kTargetStands_mps) return;
     const double sigma = std::sqrt(std::max(1e-6, body_target_.covariance(kAccel, kAccel)));
-    const double p = Phi((-config_.hard_braking_mps2 - body_target_.mean[kAccel]) / sigma);
-    if (target_->existence * p < config_.braking_probability) return;
+    const auto chance = [&](double mps2) {
+      return target_->existence * Phi((-mps2 - body_target_.mean[kAccel]) / sigma);
+    };
+    // What a vouched sender says of its brakes comes 0.3 s before own sensors are sure of it; that
+    // it brakes at all they must see.
+    double p = chance(config_.hard_braking_mps2);
+    if (target_->says_hard_braking) p = std::max(p, chance(config_.claimed_braking_mps2));
+    if (p < config_.braking_probability) return;
     // An unseen vehicle's braking is its sender's claim: it may advise, not make the ego brake.
     const bool is_seen = base.own_sensor_age_s <= 0.5;
     if (!is_seen && !(base.own_sensor_age_s <= config_.urgent_unseen_s)) return;
     Warning warning = NewWarning(Kind::kEebl, Side::kAhead);
     warning.figures = base;
-    warning.figures.conflict_probability = target_->existence * p;
+    warning.figures.conflict_probability = p;
     warning.figures.required_decel_mps2 = -body_target_.mean[kAccel];
     warning.basis = Basis::kBraking;
     warning.level = is_seen && placement_.zone == Zone::kAhead ? Level::kWarn : Level::kAdvise;
@@ -278,7 +306,10 @@ class Assessor {
              Level at_most = Level::kUrgent, Level by_gap = Level::kInfo) {
     Warning warning = NewWarning(kind, side);
     warning.figures = figures;
-    const Levels levels = LevelsOf(*target_, conflict, figures, {at_most, by_gap}, config_);
+    const double urgent_probability =
+        kind == Kind::kIma ? config_.urgent_crossing_probability : config_.urgent_probability;
+    const Levels levels =
+        LevelsOf(*target_, conflict, figures, {at_most, by_gap, urgent_probability}, config_);
     warning.level = levels.level;
     warning.basis = levels.basis;
     if (levels.if_sure < Level::kAdvise) return;
@@ -297,6 +328,7 @@ class Assessor {
   std::vector<EgoFan> turns_;
   std::optional<EgoFan> fan_;
   std::optional<EgoFan> starting_;  // From a stop; made when needed.
+  std::optional<EgoFan> straight_;  // The path laid out straight; made when needed.
   const Target* target_ = nullptr;
   BodyTarget body_target_;
   Placement placement_;

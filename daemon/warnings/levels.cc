@@ -12,7 +12,7 @@ Levels LevelsOf(const Target& target, const Conflict& conflict, const Figures& f
   // NaN compares false: never measured by an own sensor, never URGENT.
   const bool may_be_urgent = figures.own_sensor_age_s <= config.urgent_unseen_s;
   const auto level_of = [&](double existence) {
-    if (existence * conflict.probability_exact >= config.urgent_probability &&
+    if (existence * conflict.probability_exact >= bounds.urgent_probability &&
         conflict.exact_median_s <= figures.urgent_before_s && may_be_urgent) {
       return Level::kUrgent;
     }

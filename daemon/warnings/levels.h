@@ -11,6 +11,7 @@ namespace v2vouch::warnings {
 struct LevelBounds {
   Level at_most = Level::kUrgent;
   Level by_gap = Level::kInfo;  ///< What the gap between the two alone comes to.
+  double urgent_probability = 0.9;
 };
 
 struct Levels {

@@ -44,6 +44,7 @@ std::vector<Target> MergeLists(const TargetList* local, const TargetList* priori
     own->bridge_budget_s = theirs.bridge_budget_s;
     own->existence = std::max(own->existence, theirs.existence);
     own->last_own = std::max(own->last_own, theirs.last_own);
+    own->says_hard_braking = theirs.says_hard_braking;
     if (own->visibility != Visibility::kVisible) {
       own->state_O = theirs.state_O;
       own->extent = theirs.extent;

@@ -13,11 +13,49 @@ namespace {
 constexpr double kUnknownAxis_rad = 0.5;
 constexpr double kSameDirection_rad = 0.786;  // 45 degrees
 constexpr double kOncoming_rad = 2.356;       // 135 degrees
+constexpr double kStandsSigma_mps = 1.0;      // Of the speed of what shows none and no axis either.
 // Comes nearer across the path: a change of lanes takes 1 to 1.5 m/s.
 constexpr double kLeavesLane_mps = 0.8;
 // Within its lane it wanders: velocity across, and what that changes by in a second.
 constexpr double kWander_mps = 0.25;
+// Of what crosses, beside what its track knows: acceleration along and across, sigmas.
+constexpr double kUsualAccel_mps2 = 1.0;
+constexpr double kUsualAcross_mps2 = 0.5;
+constexpr double kContradicts_sigmas = 2.0;
 constexpr double kEye_m = 1.5;  // Driver's eye ahead of the rear axle, about.
+
+// Lowers the sigma of one state to `at_most`, correlations kept.
+void Narrow(StateMatrix& covariance, int state, double at_most) {
+  const double before = std::sqrt(std::max(covariance(state, state), 0.0));
+  if (before <= at_most) return;
+  covariance.row(state) *= at_most / before;
+  covariance.col(state) *= at_most / before;
+}
+
+bool IsAxisKnown(const BodyTarget& target) {
+  return target.covariance(kYaw, kYaw) <= kUnknownAxis_rad * kUnknownAxis_rad;
+}
+
+// The vehicle turned by `-off_rad` into a lane of this curvature, in which it wanders.
+BodyTarget Along(const BodyTarget& target, double off_rad, double curvature_per_m) {
+  const double speed_mps = target.mean[kSpeed];
+  BodyTarget kept = target;
+  kept.mean[kYaw] = WrapAngle(target.mean[kYaw] - off_rad);
+  kept.mean[kYawRate] = curvature_per_m * speed_mps;
+  const double wander_rad = kWander_mps / std::abs(speed_mps);
+  for (const int state : {kYaw, kYawRate}) Narrow(kept.covariance, state, wander_rad);
+  return kept;
+}
+
+// Joins the expectation that a state is 0 give or take `sigma`, where it does not contradict.
+void Expect(BodyTarget& target, int state, double sigma) {
+  const double variance = target.covariance(state, state) + sigma * sigma;
+  const double off = target.mean[state];
+  if (off * off > kContradicts_sigmas * kContradicts_sigmas * variance) return;
+  const Eigen::Matrix<double, kStateSize, 1> gain = target.covariance.col(state) / variance;
+  target.mean -= gain * off;
+  target.covariance -= variance * gain * gain.transpose();
+}
 
 }  // namespace
 
@@ -36,8 +74,12 @@ BodyTarget InBody(const Target& target, const Eigen::Vector2d& ego_p_O, double e
   out.mean[kYaw] = WrapAngle(mean[kYaw] - ego_yaw_O);
   out.covariance = turn * target.state_O.covariance * turn.transpose();
   out.size = {0.5 * target.extent.length_m, 0.5 * target.extent.width_m};
-  if (out.covariance(kYaw, kYaw) > kUnknownAxis_rad * kUnknownAxis_rad) {
+  if (!IsAxisKnown(out)) {
     out.size.length_m = std::min(out.size.length_m, out.size.width_m);
+    // Nor a speed: what shows none stands.
+    if (std::abs(mean[kSpeed]) < kTargetStands_mps) {
+      Narrow(out.covariance, kSpeed, kStandsSigma_mps);
+    }
   }
   return out;
 }
@@ -58,17 +100,31 @@ BodyTarget InItsLane(const EgoPlan& plan, const BodyTarget& target, const Placem
   const bool leaves = placement.zone == Zone::kAheadAside ? -side * left_mps > kLeavesLane_mps
                                                           : std::abs(left_mps) > kLeavesLane_mps;
   if (leaves) return target;
-  BodyTarget kept = target;
-  kept.mean[kYaw] = WrapAngle(target.mean[kYaw] - placement.turned_rad);
-  kept.mean[kYawRate] = plan.curvature_per_m * speed_mps;
-  const double wander_rad = kWander_mps / std::abs(speed_mps);
-  for (const int state : {kYaw, kYawRate}) {
-    const double before = std::sqrt(std::max(kept.covariance(state, state), 0.0));
-    const double share = before > wander_rad ? wander_rad / before : 1.0;
-    kept.covariance.row(state) *= share;
-    kept.covariance.col(state) *= share;
-  }
+  return Along(target, placement.turned_rad, plan.curvature_per_m);
+}
+
+std::optional<BodyTarget> ComingInItsLane(const BodyTarget& target, const Placement& placement) {
+  const double speed_mps = std::abs(target.mean[kSpeed]);
+  if (speed_mps < kTargetStands_mps || !IsAxisKnown(target)) return std::nullopt;
+  if (speed_mps * speed_mps < 4.0 * target.covariance(kSpeed, kSpeed)) return std::nullopt;
+  if (speed_mps * std::abs(std::sin(placement.turned_rad)) > kLeavesLane_mps) return std::nullopt;
+  BodyTarget kept = Along(target, WrapAngle(placement.turned_rad - kPi), 0.0);
+  const double c = std::cos(placement.place.yaw_rad);
+  const double s = std::sin(placement.place.yaw_rad);
+  StateMatrix turn = StateMatrix::Identity();
+  turn.topLeftCorner<2, 2>() << c, s, -s, c;
+  kept.covariance = turn * kept.covariance * turn.transpose();
+  kept.mean.head<2>() << placement.place.along_m, placement.place.left_m;
+  kept.mean[kYaw] = WrapAngle(kept.mean[kYaw] - placement.place.yaw_rad);
   return kept;
+}
+
+BodyTarget Steadied(const BodyTarget& target) {
+  BodyTarget steady = target;
+  const double speed_mps = std::abs(target.mean[kSpeed]);
+  Expect(steady, kAccel, kUsualAccel_mps2);
+  Expect(steady, kYawRate, kUsualAcross_mps2 / std::max(speed_mps, kTargetStands_mps));
+  return steady;
 }
 
 bool IsAlongside(const EgoBody& body, const BodyTarget& target, const Placement& placement) {

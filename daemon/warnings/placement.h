@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "daemon/warnings/conflict.h"
 #include "daemon/warnings/warning.h"
 #include "daemon/warnings/warnings_config.h"
@@ -40,6 +42,15 @@ struct Placement {
 /// 0.8 m/s across it is changing lanes and stays as it is; slower, the error of a heading at speed
 /// looks the same.
 BodyTarget InItsLane(const EgoPlan& plan, const BodyTarget& target, const Placement& placement);
+
+/// An oncoming vehicle as one that keeps its lane along the path that both drive, laid out
+/// straight: x along the path, y left of it. So a bend that both follow makes no conflict. None
+/// where it moves across the path by more than 0.8 m/s.
+std::optional<BodyTarget> ComingInItsLane(const BodyTarget& target, const Placement& placement);
+
+/// A crossing vehicle, with what is known of cars that cross beside what the track knows: most
+/// drive straight on at an even speed. One that shows a turn or braking stays as it is.
+BodyTarget Steadied(const BodyTarget& target);
 
 /// Beside the path, and part of it beside the ego already: no braking of ours is for it.
 bool IsAlongside(const EgoBody& body, const BodyTarget& target, const Placement& placement);

@@ -28,6 +28,7 @@ struct Target {
   /// Faster than a vehicle can become since it was listed at a walk: a track that has slipped to
   /// something else. Set by the Warner.
   bool is_sudden = false;
+  bool says_hard_braking = false;  ///< Its vouched sender reports more than 0.4 g. PRIORITY only.
 };
 
 /// A track list as far as a warning needs it.

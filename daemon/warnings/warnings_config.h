@@ -12,6 +12,9 @@ struct WarningsConfig {
   double advise_probability = 0.2;  ///< ADVISE from this probability of contact on.
   double warn_probability = 0.5;
   double urgent_probability = 0.9;
+  /// URGENT of crossing vehicles: two degrees of heading decide there whether the bodies touch, and
+  /// the last moment to brake does not wait for them.
+  double urgent_crossing_probability = 0.75;
   double driver_reaction_s = 1.2;  ///< WARN: reaction and braking of a driver ...
   double driver_decel_mps2 = 4.0;  ///< ... and this much before he would have to.
   /// Of crossing and oncoming vehicles. Of those ahead only as far as a driver who brakes with
@@ -30,7 +33,10 @@ struct WarningsConfig {
   double start_accel_mps2 = 1.75;    ///< Of an ego that starts from a stop.
   double hard_braking_mps2 = 3.9;    ///< EEBL: 0.4 g, as SAE J2735 defines the event.
   double braking_probability = 0.8;  ///< EEBL: that it brakes harder than that ...
-  double braking_hold_s = 0.2;       ///< ... for so long.
+  /// EEBL: a vouched sender's claim of hard braking counts where own sensors see it brake harder
+  /// than this with the same probability.
+  double claimed_braking_mps2 = 1.5;
+  double braking_hold_s = 0.2;  ///< ... for so long.
   double braking_range_m = 300.0;
   double beside_m = 3.0;   ///< BSW: the zone beside the car (ISO 17387) ...
   double behind_m = 3.0;   ///< ... ends this far behind its rear.
@@ -52,6 +58,8 @@ struct WarningsConfig {
     a.Field("advise_probability", advise_probability, {.above = 0.0, .at_most = 1.0});
     a.Field("warn_probability", warn_probability, {.above = 0.0, .at_most = 1.0});
     a.Field("urgent_probability", urgent_probability, {.above = 0.0, .at_most = 1.0});
+    a.Field("urgent_crossing_probability", urgent_crossing_probability,
+            {.above = 0.0, .at_most = 1.0});
     a.Field("driver_reaction_s", driver_reaction_s, {.at_least = 0.0, .at_most = 5.0});
     a.Field("driver_decel_mps2", driver_decel_mps2, {.above = 0.5, .at_most = 12.0});
     a.Field("warn_margin_s", warn_margin_s, {.at_least = 0.0, .at_most = 5.0});
@@ -68,6 +76,7 @@ struct WarningsConfig {
     a.Field("start_accel_mps2", start_accel_mps2, {.above = 0.0, .at_most = 5.0});
     a.Field("hard_braking_mps2", hard_braking_mps2, {.above = 0.0, .at_most = 12.0});
     a.Field("braking_probability", braking_probability, {.above = 0.0, .at_most = 1.0});
+    a.Field("claimed_braking_mps2", claimed_braking_mps2, {.at_least = 0.0, .at_most = 12.0});
     a.Field("braking_hold_s", braking_hold_s, {.at_least = 0.0, .at_most = 2.0});
     a.Field("braking_range_m", braking_range_m, {.above = 0.0, .at_most = 1000.0});
     a.Field("beside_m", beside_m, {.above = 0.0, .at_most = 6.0});

@@ -35,6 +35,8 @@ warnings::Target ToTarget(const track_t& track, const track_list_t& list, ListOr
   if (track.visibility >= 0 && track.visibility <= 2) {
     out.visibility = static_cast<Visibility>(track.visibility);
   }
+  out.says_hard_braking =
+      origin == ListOrigin::kPriority && (track.events & track_t::EVENT_HARD_BRAKING) != 0;
   out.bridge_budget_s = is_local ? kNaN : track.bridge_budget_s;
   for (const track_source_t& source : track.sources) {
     if (source.kind == track_source_t::V2V) continue;

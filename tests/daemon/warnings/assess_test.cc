@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <chrono>
 #include <cmath>
 
@@ -59,6 +60,28 @@ TEST(Assess, LeadThatBrakesWarnsBeforeTheClosingSpeedTells) {
   EXPECT_EQ(found[1].warning.level, Level::kWarn);
 }
 
+// At exactly 4 m/s2 no estimate is ever sure of more than 3.9.
+TEST(Assess, ClaimOfHardBrakingCountsWhereOwnSensorsSeeItBrake) {
+  const auto level = [](double accel_mps2, bool is_claimed, bool is_seen) {
+    Target lead = Car(1, 30.0, 0, 0, 15.0);
+    lead.track_id = 2;
+    lead.state_O.mean[kAccel] = accel_mps2;
+    lead.state_O.covariance(kAccel, kAccel) = 0.5 * 0.5;
+    lead.says_hard_braking = is_claimed;
+    if (!is_seen) lead.last_own = kStart - FromSeconds(1.0);
+    for (const Assessment& each : Assess(SceneOf(Driving(15.0), {lead}), {}, {})) {
+      if (each.warning.kind == Kind::kEebl) return each.warning.level;
+    }
+    return Level::kInfo;
+  };
+  EXPECT_EQ(level(-4.0, false, true), Level::kInfo);
+  EXPECT_EQ(level(-4.0, true, true), Level::kWarn);
+  EXPECT_EQ(level(-2.2, true, true), Level::kWarn);
+  EXPECT_EQ(level(-1.5, true, true), Level::kInfo);  // Might as well only coast.
+  EXPECT_EQ(level(0.0, true, true), Level::kInfo);   // Feigned.
+  EXPECT_EQ(level(-4.0, true, false), Level::kAdvise);
+}
+
 TEST(Assess, LeadThatBrakesHardIsUrgentWhileAPlannerCanStillStopBehindIt) {
   const auto urgent = [](double gap_m, double lead_mps) {
     Target lead = Car(1, gap_m + 3.75 + 2.0, 0, 0, lead_mps);
@@ -99,6 +122,18 @@ TEST(Assess, BodyOfUnknownAxisIsUrgentOnlyWhereItsMiddleIsInThePath) {
   EXPECT_EQ(level(0.0), Level::kUrgent);
 }
 
+// A parked car as radar lists it at 97 m: no axis, no speed, and neither known well.
+TEST(Assess, WhatShowsNeitherAxisNorSpeedStands) {
+  Target parked = Car(1, 97.0, -0.7, 0, 0.1);
+  parked.state_O.covariance.diagonal() << 1.0, 0.6, 0.49, 22.0, 0.01, 2.25;
+  const auto warning = Only(SceneOf(Driving(22.2), {parked}));
+  ASSERT_TRUE(warning);
+  EXPECT_EQ(warning->level, Level::kWarn);
+  parked.state_O.mean[kY] = -3.5;
+  const auto beside = Only(SceneOf(Driving(22.2), {parked}));
+  EXPECT_TRUE(!beside || beside->level < Level::kWarn);
+}
+
 // A lorry in the next lane that we pass at 31 m/s: its heading and yaw rate are not known better.
 Target Lorry(double x, double yaw, double yaw_rate) {
   Target lorry = Car(1, x, -3.7, yaw, 26.7);
@@ -133,6 +168,79 @@ TEST(Assess, OncomingTrafficInItsLaneSaysNothing) {
   Target oncoming = Car(1, 96.5 * std::sin(0.6), 100.0 - 96.5 * std::cos(0.6), kPi + 0.6, 14.0);
   oncoming.state_O.mean[kYawRate] = -0.145;
   EXPECT_FALSE(Only(SceneOf(Driving(14.0, 0.14), {oncoming})));
+}
+
+TEST(Assess, OncomingTrafficOfALongBendSaysNothing) {
+  // Left bend of 120 m that both follow, 93 m apart along it: neither of them leaves it.
+  for (const double at_rad : {0.5, 0.65, 0.8}) {
+    Target oncoming = Car(1, 116.5 * std::sin(at_rad), 120.0 - 116.5 * std::cos(at_rad),
+                          WrapAngle(kPi + at_rad), 13.9);
+    oncoming.state_O.mean[kYawRate] = -13.9 / 116.5;
+    EXPECT_FALSE(Only(SceneOf(Driving(13.9, 13.9 / 120.0), {oncoming}))) << at_rad;
+    // The same in the ego's own lane.
+    oncoming.state_O.mean.head<2>() << 120.0 * std::sin(at_rad), 120.0 - 120.0 * std::cos(at_rad);
+    EXPECT_TRUE(Only(SceneOf(Driving(13.9, 13.9 / 120.0), {oncoming}))) << at_rad;
+  }
+}
+
+TEST(Assess, CarInTheEgosOwnLaneIsWarnedOfWhileADriverCanStillBrake) {
+  // 28 m/s together, one degree of heading: 1.7 m across on the way.
+  Target oncoming = Car(1, 98.0, 0.4, kPi, 14.0);
+  oncoming.state_O.covariance.diagonal() << 0.1, 0.06, 3.5e-4, 0.01, 0.0036, 0.25;
+  const auto warning = Only(SceneOf(Driving(14.0), {oncoming}));
+  ASSERT_TRUE(warning);
+  EXPECT_EQ(warning->kind, Kind::kFcw);
+  EXPECT_EQ(warning->side, Side::kOncoming);
+  EXPECT_EQ(warning->level, Level::kWarn);
+  oncoming.state_O.mean[kY] = 3.5;
+  EXPECT_FALSE(Only(SceneOf(Driving(14.0), {oncoming})));
+}
+
+TEST(Assess, NoLaneIsKeptByWhatMayStandOrPointAnywhere) {
+  // First frames of a parked car: backwards at 7 m/s, give or take 4, axis unknown.
+  Target parked = Car(1, 24.0, 0.8, 0.0, -7.4);
+  parked.state_O.covariance.diagonal() << 4.0, 1.1, 0.49, 14.5, 0.01, 2.25;
+  EXPECT_FALSE(Only(SceneOf(Driving(2.8), {parked})));
+}
+
+TEST(Steadied, JoinsWhatMostCrossingCarsDoWhereTheTrackDoesNotContradict) {
+  BodyTarget target;
+  target.mean << 20.0, -30.0, kPi / 2, 15.0, -0.03, 0.4;
+  target.covariance.diagonal() << 0.25, 0.3, 1e-3, 0.09, 0.0036, 0.5;
+  target.covariance(kYaw, kYawRate) = target.covariance(kYawRate, kYaw) = 1e-3;
+  const BodyTarget steady = Steadied(target);
+  // Variances 0.0036 and (0.5 / 15)^2, 0.5 and 1: each counts by its inverse.
+  const double across = 0.25 / 225.0;
+  EXPECT_NEAR(steady.mean[kYawRate], -0.03 * across / (0.0036 + across), 1e-9);
+  EXPECT_NEAR(steady.mean[kAccel], 0.4 * 1.0 / 1.5, 1e-9);
+  EXPECT_NEAR(steady.covariance(kAccel, kAccel), 0.5 / 1.5, 1e-9);
+  EXPECT_GT(steady.mean[kYaw], target.mean[kYaw]);  // It had gone with the yaw rate.
+  EXPECT_LT(steady.covariance(kYaw, kYaw), target.covariance(kYaw, kYaw));
+  EXPECT_GT(steady.covariance.eigenvalues().real().minCoeff(), 0.0);
+  target.mean[kAccel] = -3.0;   // Brakes.
+  target.mean[kYawRate] = 0.3;  // Turns.
+  EXPECT_EQ(Steadied(target).mean, target.mean);
+}
+
+// The last moment to brake does not wait until the heading is known better than to two degrees.
+TEST(Assess, CrossingCarIsUrgentWithSomeDoubtLeft) {
+  WarningsConfig sure;
+  sure.urgent_crossing_probability = 0.9;
+  int only_by_less = 0;
+  for (double x = 6.0; x < 10.0; x += 0.1) {
+    Target crossing = Car(1, x, -8.5, FromDegrees(87.5), 16.7);
+    crossing.state_O.covariance.diagonal() << 0.25, 0.3, 7e-4, 0.06, 0.0036, 0.5;
+    const auto level = [&crossing](const WarningsConfig& config) {
+      const auto found = Assess(SceneOf(Driving(5.6), {crossing}), {}, config);
+      return found.empty() ? Level::kInfo : found.front().warning.level;
+    };
+    EXPECT_LE(level(sure), level({})) << x;
+    only_by_less += level({}) == Level::kUrgent && level(sure) < Level::kUrgent;
+    if (x > 9.0) {
+      EXPECT_LT(level({}), Level::kUrgent) << x;  // Has passed.
+    }
+  }
+  EXPECT_GE(only_by_less, 2);
 }
 
 TEST(Assess, CrossingCarIsImaFromItsSide) {
@@ -200,7 +308,7 @@ TEST(Assess, DoubtfulExistenceLowersTheLevel) {
 TEST(Assess, HiddenVehicleWarnsByWhereItCouldBe) {
   // Wide covariance: the probability of this narrow conflict is small, the danger is not.
   Target car = Car(0, 25.0, -26.0, kPi / 2, 10.0);
-  car.state_O.covariance.diagonal() << 4.0, 9.0, 0.03, 4.0, 0.01, 1.0;
+  car.state_O.covariance.diagonal() << 4.0, 9.0, 0.06, 4.0, 0.01, 1.0;
   const auto seen = Only(SceneOf(Driving(10.0), {car}));
   Target hidden = Vouched(car, 7, Visibility::kHidden);
   const auto unseen = Only(SceneOf(Driving(10.0), {hidden}));
@@ -269,7 +377,9 @@ TEST(MergeLists, OneObjectPerVehicleAndOwnSensorsWinWhileTheySee) {
   Target hidden = Vouched(Car(12, 33, 3, 0, 5), 102, Visibility::kHidden);
   hidden.local_id = 12;
   priority.targets.push_back(hidden);
+  priority.targets[0].says_hard_braking = true;
   const auto merged = MergeLists(&local, &priority, kStart + FromSeconds(0.1));
+  EXPECT_TRUE(merged[1].says_hard_braking);
   ASSERT_EQ(merged.size(), 3u);
   EXPECT_EQ(merged[0].source, Source::kPriority);
   EXPECT_EQ(merged[0].track_id, 103);
