@@ -21,10 +21,10 @@ struct TrackEvidence {
   // Existence: TrackTable, and the frames' updates in Tracker.
   Timestamp last_hit{};
   double missed_looks = 0.0;  ///< Detections that were expected since then.
-  Timestamp borne_out{};    ///< Last hit that cannot be the second echo of another vehicle.
-  double proven = 0.0;      ///< Existence by pictures, boxes and motion alone.
-  bool is_certain = false;  ///< Started by a bench's pose or box: however unlikely, it may stay.
-  bool is_ended = false;    ///< Leaves the table at the end of this step.
+  Timestamp borne_out{};      ///< Last hit that cannot be the second echo of another vehicle.
+  double proven = 0.0;        ///< Existence by pictures, boxes and motion alone.
+  bool is_certain = false;    ///< Started by a bench's pose or box: however unlikely, it may stay.
+  bool is_ended = false;      ///< Leaves the table at the end of this step.
   std::array<double, 8> class_votes{};        ///< Scores by ObjectClass, older ones less.
   ObjectClass named = ObjectClass::kUnknown;  ///< What most of them say.
 
