@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/scenario/recording.h"
 
 namespace v2vouch::testing {
@@ -23,6 +25,9 @@ TEST_P(NobodyLiesIn, NobodyIsWithdrawnAsItSlipsBehindALorry) {
   const Outcome outcome = Perceive(recording);
   EXPECT_THAT(outcome.reports, ::testing::IsEmpty());
   EXPECT_GE(outcome.vouched.size(), 2u);
+  // ... but not its place in PRIORITY while it is hidden.
+  ASSERT_GT(outcome.hidden_entries, 20);
+  EXPECT_LT(std::sqrt(outcome.hidden_error_m2 / outcome.hidden_entries), 1.2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, NobodyLiesIn,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "daemon/common/base/angle.h"
 #include "daemon/common/geodesy/ecef.h"
@@ -104,6 +105,21 @@ Recording RecordWith(const std::string& name, std::uint64_t seed, const std::str
   return world ? AllEvents(*world, seed) : Recording{};
 }
 
+// Squared distance to the nearest true vehicle [m^2].
+double SquaredErrorOf(const track_t& track, const truth_list_t& truth) {
+  const double c = std::cos(truth.ego_yaw_rad);
+  const double s = std::sin(truth.ego_yaw_rad);
+  double least = 1e12;
+  for (const truth_object_t& object : truth.objects) {
+    const double dx = object.x_m - truth.ego_x_m;
+    const double dy = object.y_m - truth.ego_y_m;
+    const double ex = track.x_body_m - (c * dx + s * dy);
+    const double ey = track.y_body_m - (c * dy - s * dx);
+    least = std::min(least, ex * ex + ey * ey);
+  }
+  return least;
+}
+
 Outcome Perceive(const Recording& recording, const std::string& config_path) {
   DaemonConfig config;
   std::vector<std::string> problems;
@@ -111,7 +127,11 @@ Outcome Perceive(const Recording& recording, const std::string& config_path) {
   Engine engine(config);
   Outbox outbox;
   Outcome outcome;
+  std::optional<truth_list_t> truth;
   for (const sim::SimEvent& event : recording) {
+    if (event.channel == "TRUTH") {
+      if (const auto list = wire::Decode<truth_list_t>(event.bytes)) truth = *list;
+    }
     outbox.Clear();
     engine.OnMessage(event.channel, event.bytes, event.arrival, outbox);
     for (const Outbox::Message& message : outbox.messages()) {
@@ -133,6 +153,9 @@ Outcome Perceive(const Recording& recording, const std::string& config_path) {
         if (!is_priority) continue;
         outcome.vouched.insert(IdOf(track));
         outcome.priority_ids[IdOf(track)].insert(track.id);
+        if (!truth || track.local_id != 0) continue;
+        outcome.hidden_error_m2 += SquaredErrorOf(track, *truth);
+        ++outcome.hidden_entries;
       }
     }
   }

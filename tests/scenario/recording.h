@@ -33,6 +33,10 @@ struct Outcome {
   std::set<std::uint32_t> vouched;   ///< TemporaryIDs ever listed in TRACKS_PRIORITY.
   std::map<std::uint32_t, std::set<std::int64_t>> priority_ids;  ///< Of each of those.
   std::vector<std::string> reports;  ///< Checks of MISBEHAVIOR, in order.
+  /// Of vehicles in TRACKS_PRIORITY that rest on no LOCAL track: squared distance to the nearest
+  /// vehicle of TRUTH [m^2], summed, and how many.
+  double hidden_error_m2 = 0.0;
+  int hidden_entries = 0;
 };
 
 Outcome Perceive(const Recording& recording, const std::string& config_path = "");

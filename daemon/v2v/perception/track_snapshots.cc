@@ -11,6 +11,8 @@ namespace {
 // So long after a partial observation the state may be off, and so long must a vehicle be observed
 // whole before it is trusted again.
 constexpr double kPartial_s = 0.5;
+// What passes covers a vehicle within so long. Beyond that a liar could walk off unseen.
+constexpr double kBriefly_s = 3.5;
 // By how much the measurements of a part may mislead: one sigma.
 //
 constexpr double kPartialPosition_m = 0.5;
@@ -41,13 +43,18 @@ void TrackSnapshots::Add(const LocalTrack& track, const Observed& observed) {
   const auto before = std::ranges::find(carried_, track.id, &PartialObservation::track_id);
   if (before != carried_.end()) snapshot.partial = *before;
   if (observed.is_partial) {
-    snapshot.partial = PartialObservation{track.id, stamp_, std::nullopt};
+    const auto& so_far = snapshot.partial;
+    const bool goes_on =
+        so_far && (!so_far->whole || ToSeconds(stamp_ - *so_far->whole) < kPartial_s);
+    snapshot.partial =
+        PartialObservation{track.id, stamp_, std::nullopt, goes_on ? so_far->first : stamp_};
   } else if (observed.is_hit && snapshot.partial && !snapshot.partial->whole) {
     snapshot.partial->whole = stamp_;
   }
   if (!snapshot.partial) return;
-  const auto& [id, last, whole] = *snapshot.partial;
+  const auto& [id, last, whole, first] = *snapshot.partial;
   snapshot.is_partial = ToSeconds(stamp_ - last) <= kPartial_s;
+  snapshot.is_briefly_partial = snapshot.is_partial && ToSeconds(stamp_ - first) <= kBriefly_s;
   // A track that coasts goes on as the part had it, however long.
   snapshot.is_doubtful = !whole || ToSeconds(track.support.last() - *whole) < kPartial_s;
   if (snapshot.is_partial) Widen(snapshot.track.state_O.covariance);

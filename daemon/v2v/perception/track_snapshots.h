@@ -18,6 +18,7 @@ struct PartialObservation {
   std::uint64_t track_id = 0;
   Timestamp last{};                ///< The last of them ...
   std::optional<Timestamp> whole;  ///< ... and the first frame since that had the whole vehicle.
+  Timestamp first{};               ///< The first of this phase.
 };
 
 /// A confirmed LOCAL track as of the newest frame.
@@ -26,8 +27,9 @@ struct TrackSnapshot {
   bool is_sure = false;  ///< The sensors alone are sure enough of it for PRIORITY.
   bool is_hit = false;   ///< Given a measurement in the newest frame.
   std::optional<PartialObservation> partial{};
-  bool is_partial = false;   ///< Partially observed so lately that its state may be off.
-  bool is_doubtful = false;  ///< ... and not observed completely for long enough since.
+  bool is_partial = false;          ///< Partially observed so lately that its state may be off.
+  bool is_briefly_partial = false;  ///< ... for no longer than something takes to cover it.
+  bool is_doubtful = false;         ///< ... and not observed completely for long enough since.
 };
 
 /// What the sensors know, for the V2V side: all confirmed LOCAL tracks of the newest frame, ordered

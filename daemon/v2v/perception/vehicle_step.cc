@@ -18,6 +18,10 @@ namespace {
 constexpr double kApart_m = 0.7;
 // A bridge is explained by a track, but not from the next lane.
 constexpr double kMostSlack_m = 1.0;
+// The part of a moving vehicle that something begins to cover drags its track along; its own
+// motion and the sender's bias are known from before.
+constexpr double kPartNoise = 100.0;
+constexpr double kMoving_mps = 1.0;
 constexpr double kMostBias = 0.95;  // Of what a bias may be: the filter stops there.
 
 Occluder FootprintOfVehicle(const PriorityVehicle& vehicle) {
@@ -65,8 +69,10 @@ void TakeMeasurements(const V2vView& view, PriorityVehicle& vehicle, const Track
   for (const SensorUpdate& update : frame.updates) {
     if (update.track_id != track.id) continue;
     const StateVector x = vehicle.filter.kinematics().mean;
-    const auto linear = Linearize(update.measurement, x, extent, frame.ego, view.vehicle);
-    if (linear) vehicle.filter.Update(*linear);
+    auto linear = Linearize(update.measurement, x, extent, frame.ego, view.vehicle);
+    if (!linear) continue;
+    if (seen.is_briefly_partial && std::abs(x[kSpeed]) > kMoving_mps) linear->R *= kPartNoise;
+    vehicle.filter.Update(*linear);
   }
   vehicle.support = track.support;
   if (track.object_class != ObjectClass::kUnknown) vehicle.object_class = track.object_class;
