@@ -309,7 +309,7 @@ class Assessor {
     const double urgent_probability =
         kind == Kind::kIma ? config_.urgent_crossing_probability : config_.urgent_probability;
     const Levels levels =
-        LevelsOf(*target_, conflict, figures, {at_most, by_gap, urgent_probability}, config_);
+        LevelsOf(*target_, conflict, figures, {urgent_probability, at_most, by_gap}, config_);
     warning.level = levels.level;
     warning.basis = levels.basis;
     if (levels.if_sure < Level::kAdvise) return;

@@ -9,9 +9,9 @@ namespace v2vouch::warnings {
 
 /// What bounds the level of a conflict beside its probability and time.
 struct LevelBounds {
+  double urgent_probability;  ///< Of contact: URGENT from here on.
   Level at_most = Level::kUrgent;
   Level by_gap = Level::kInfo;  ///< What the gap between the two alone comes to.
-  double urgent_probability = 0.9;
 };
 
 struct Levels {

@@ -24,6 +24,15 @@ constexpr double kUsualAcross_mps2 = 0.5;
 constexpr double kContradicts_sigmas = 2.0;
 constexpr double kEye_m = 1.5;  // Driver's eye ahead of the rear axle, about.
 
+// Turns the place in a state into axes that lie at `yaw_rad`.
+StateMatrix IntoAxes(double yaw_rad) {
+  const double c = std::cos(yaw_rad);
+  const double s = std::sin(yaw_rad);
+  StateMatrix turn = StateMatrix::Identity();
+  turn.topLeftCorner<2, 2>() << c, s, -s, c;
+  return turn;
+}
+
 // Lowers the sigma of one state to `at_most`, correlations kept.
 void Narrow(StateMatrix& covariance, int state, double at_most) {
   const double before = std::sqrt(std::max(covariance(state, state), 0.0));
@@ -61,13 +70,7 @@ void Expect(BodyTarget& target, int state, double sigma) {
 
 BodyTarget InBody(const Target& target, const Eigen::Vector2d& ego_p_O, double ego_yaw_O) {
   BodyTarget out;
-  const double c = std::cos(ego_yaw_O);
-  const double s = std::sin(ego_yaw_O);
-  StateMatrix turn = StateMatrix::Identity();
-  turn(kX, kX) = c;
-  turn(kX, kY) = s;
-  turn(kY, kX) = -s;
-  turn(kY, kY) = c;
+  const StateMatrix turn = IntoAxes(ego_yaw_O);
   StateVector mean = target.state_O.mean;
   mean.head<2>() -= ego_p_O;
   out.mean = turn * mean;
@@ -109,10 +112,7 @@ std::optional<BodyTarget> ComingInItsLane(const BodyTarget& target, const Placem
   if (speed_mps * speed_mps < 4.0 * target.covariance(kSpeed, kSpeed)) return std::nullopt;
   if (speed_mps * std::abs(std::sin(placement.turned_rad)) > kLeavesLane_mps) return std::nullopt;
   BodyTarget kept = Along(target, WrapAngle(placement.turned_rad - kPi), 0.0);
-  const double c = std::cos(placement.place.yaw_rad);
-  const double s = std::sin(placement.place.yaw_rad);
-  StateMatrix turn = StateMatrix::Identity();
-  turn.topLeftCorner<2, 2>() << c, s, -s, c;
+  const StateMatrix turn = IntoAxes(placement.place.yaw_rad);
   kept.covariance = turn * kept.covariance * turn.transpose();
   kept.mean.head<2>() << placement.place.along_m, placement.place.left_m;
   kept.mean[kYaw] = WrapAngle(kept.mean[kYaw] - placement.place.yaw_rad);

@@ -83,6 +83,21 @@ bsm_t GhostMessage(const Ghost& ghost, const truth_list_t& truth, double x_m, do
   return message;
 }
 
+// Squared distance to the nearest true vehicle [m^2].
+double SquaredErrorOf(const track_t& track, const truth_list_t& truth) {
+  const double c = std::cos(truth.ego_yaw_rad);
+  const double s = std::sin(truth.ego_yaw_rad);
+  double least = 1e12;
+  for (const truth_object_t& object : truth.objects) {
+    const double dx = object.x_m - truth.ego_x_m;
+    const double dy = object.y_m - truth.ego_y_m;
+    const double ex = track.x_body_m - (c * dx + s * dy);
+    const double ey = track.y_body_m - (c * dy - s * dx);
+    least = std::min(least, ex * ex + ey * ey);
+  }
+  return least;
+}
+
 }  // namespace
 
 Recording Record(const std::string& name, std::uint64_t seed) {
@@ -103,21 +118,6 @@ Recording RecordWith(const std::string& name, std::uint64_t seed, const std::str
   }
   for (const std::string& problem : problems) ADD_FAILURE() << problem;
   return world ? AllEvents(*world, seed) : Recording{};
-}
-
-// Squared distance to the nearest true vehicle [m^2].
-double SquaredErrorOf(const track_t& track, const truth_list_t& truth) {
-  const double c = std::cos(truth.ego_yaw_rad);
-  const double s = std::sin(truth.ego_yaw_rad);
-  double least = 1e12;
-  for (const truth_object_t& object : truth.objects) {
-    const double dx = object.x_m - truth.ego_x_m;
-    const double dy = object.y_m - truth.ego_y_m;
-    const double ex = track.x_body_m - (c * dx + s * dy);
-    const double ey = track.y_body_m - (c * dy - s * dx);
-    least = std::min(least, ex * ex + ey * ey);
-  }
-  return least;
 }
 
 Outcome Perceive(const Recording& recording, const std::string& config_path) {

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """scripts/lies_table: counts by attack and variant, both scenarios, and bars of shares."""
 import json, os, subprocess, sys, tempfile, xml.dom.minidom
 

@@ -153,17 +153,13 @@ std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoSta
   const double sa = std::abs(std::sin(aspect));
 
   Linearized out;
-  out.y.resize(2);
+  out.y.setZero(2);
   out.H.setZero(2, kStateSize);
-  out.E.resize(2, 2);
-  out.E.row(0) << ca, sa;
+  out.E.setZero(2, 2);
   const Eigen::Vector2d sensor = Eigen::Rotation2D<double>(-state.mean[kYaw]) * p_OS;
   const double length = state.mean[kLength];
   const double width = state.mean[kWidth];
   const double angle = AngularWidth(sensor, length, width);
-  const double by_length = (AngularWidth(sensor, length + kStep_m, width) - angle) / kStep_m;
-  const double by_width = (AngularWidth(sensor, length, width + kStep_m) - angle) / kStep_m;
-  out.E.row(1) << (sa > kFlankShows ? by_length : 0.0), by_width;
   out.R.setZero(2, 2);
   const Eigen::Vector2d sigma(radar.range_sigma_m, radar.azimuth_sigma_rad);
   const Eigen::Vector2d span(measurement.radial_extent_m,
@@ -178,13 +174,16 @@ std::optional<Linearized> LinearizeSpan(const ExtendedState& state, const EgoSta
     const double noise2 = noise * noise;
     const double inside = i == 0 ? kInsideSigma_m : kRadarEdgeSigma_m / range;
     out.R(i, i) = noise2 + inside * inside;
-    if (excess > 0.0) {
-      out.y[i] = excess;
-      says_something = true;
-    } else {
-      out.y[i] = 0.0;
-      out.E.row(i).setZero();
+    if (!(excess > 0.0)) continue;
+    out.y[i] = excess;
+    says_something = true;
+    if (i == 0) {
+      out.E.row(0) << ca, sa;
+      continue;
     }
+    const double by_length = (AngularWidth(sensor, length + kStep_m, width) - angle) / kStep_m;
+    const double by_width = (AngularWidth(sensor, length, width + kStep_m) - angle) / kStep_m;
+    out.E.row(1) << (sa > kFlankShows ? by_length : 0.0), by_width;
   }
   if (!says_something) return std::nullopt;
   return out;

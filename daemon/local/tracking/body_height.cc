@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/common/models/extent.h"
+
 namespace v2vouch {
 namespace {
 
@@ -52,7 +54,7 @@ void BodyHeight::Add(const CameraLook& look, const CameraMeasurement& z, double 
 }
 
 ObjectClass BodyHeight::Plausible(ObjectClass named) const {
-  const bool is_long = named == ObjectClass::kTruck || named == ObjectClass::kBus;
+  const bool is_long = IsLong(named);
   if (!is_long && named != ObjectClass::kCar && named != ObjectClass::kVan) return named;
   switch (kind_) {
     case Kind::kLow:

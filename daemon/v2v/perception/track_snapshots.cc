@@ -14,7 +14,6 @@ constexpr double kPartial_s = 0.5;
 // What passes covers a vehicle within so long. Beyond that a liar could walk off unseen.
 constexpr double kBriefly_s = 3.5;
 // By how much the measurements of a part may mislead: one sigma.
-//
 constexpr double kPartialPosition_m = 0.5;
 constexpr double kPartialYaw_rad = FromDegrees(8.0);
 constexpr double kPartialSpeed_mps = 0.7;
